@@ -1,0 +1,2 @@
+//! limn-mesh: the kernel.
+pub mod soup;
