@@ -1,2 +1,64 @@
-//! (skeleton)
-fn main() {}
+//! Build, serve, test and measure Limn: `cargo xtask help`.
+//!
+//! One small program does all of the project's chores, so that a fresh machine needs nothing but Rust and Node:
+//!
+//! ```text
+//! cargo xtask serve ──► toolchain ──► wasm (cargo + wasm-bindgen, in process) ──► server
+//!             dist  ──► the same, profile `dist` ──► dist/
+//!             test  ──► toolchain, npm, Chromium, Vulkan ──► native, wasm and browser tests
+//!             tidy  ──► rustfmt, clippy, tsc, house rules
+//!             bench ──► cargo bench
+//! ```
+//!
+//! Each wasm module has a target folder of its own: two feature sets in one folder relink each other at every start.
+//! xtask itself lives in `target/xtask` (see `.cargo/config.toml`), native builds in `target`.
+
+mod arguments;
+mod dist;
+mod paths;
+mod process;
+mod serve;
+mod server;
+mod toolchain;
+mod wasm;
+
+use anyhow::{Result, bail};
+use arguments::Arguments;
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Usage: cargo xtask <command> [options]
+
+  serve   build the page and serve it on this machine
+            --release        what ships: optimised for size and speed, also written to dist/
+            --port N         the port to listen on (default: 8080, or the next free one)
+            --only MODULE    build webgpu or webgl alone
+  dist    build what ships into dist/ and print its size
+  help    this text
+
+While `serve` runs, reload the page: what changed since is rebuilt first.
+";
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nxtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<()> {
+    let mut arguments = Arguments::new(std::env::args().skip(1));
+    let command = arguments.positional().unwrap_or_else(|| "help".to_owned());
+    match command.as_str() {
+        "serve" => serve::run(arguments),
+        "dist" => dist::run(arguments),
+        "help" | "--help" | "-h" => {
+            print!("{HELP}");
+            Ok(())
+        }
+        other => bail!("there is no command `{other}`; `cargo xtask help` lists them"),
+    }
+}

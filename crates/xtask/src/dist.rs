@@ -1,0 +1,104 @@
+//! `cargo xtask dist`: the folder that ships.
+//!
+//! `dist/` holds the page as any static host serves it: `index.html`, `web/` and `pkg/` with both modules. The sizes
+//! are printed raw and as brotli at its highest level, which is what good hosts send.
+
+use crate::arguments::Arguments;
+use crate::paths;
+use crate::wasm::{self, FILES, Module, Profile};
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Builds both modules as they ship and fills `dist/`.
+pub fn run(arguments: Arguments) -> Result<()> {
+    arguments.finish()?;
+    build()?;
+    report()
+}
+
+/// Builds both modules as they ship and fills `dist/`.
+pub fn build() -> Result<()> {
+    for module in Module::ALL {
+        wasm::build(module, Profile::Dist)?;
+    }
+    assemble()
+}
+
+/// Copies the page and the two built modules into a fresh `dist/`.
+pub fn assemble() -> Result<()> {
+    let dist = paths::dist();
+    if dist.exists() {
+        fs::remove_dir_all(&dist).with_context(|| format!("could not empty {}", paths::shown(&dist)))?;
+    }
+    copy(&paths::root().join("index.html"), &dist.join("index.html"))?;
+    for from in files(&paths::root().join("web"))? {
+        let name = from.strip_prefix(paths::root())?;
+        // Type declarations are for editors and `tidy`.
+        if !from.to_string_lossy().ends_with(".d.ts") {
+            copy(&from, &dist.join(name))?;
+        }
+    }
+    for module in Module::ALL {
+        for name in FILES {
+            copy(&module.package(Profile::Dist).join(name), &dist.join("pkg").join(module.id()).join(name))?;
+        }
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::copy(from, to).with_context(|| format!("could not copy {} to {}", paths::shown(from), paths::shown(to)))?;
+    Ok(())
+}
+
+/// Every file below a folder, sorted, hidden ones left out.
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let entries = fs::read_dir(folder).with_context(|| format!("could not read {}", paths::shown(folder)))?;
+    for entry in entries {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if entry.file_type()?.is_dir() {
+            found.extend(files(&entry.path())?);
+        } else {
+            found.push(entry.path());
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Prints every file of `dist/` with its size, raw and compressed, and what each renderer adds up to.
+pub fn report() -> Result<()> {
+    let dist = paths::dist();
+    let mut sums = [(0, 0); 3];
+    println!("{:>12} {:>12}  file", "bytes", "brotli 11");
+    for path in files(&dist)? {
+        let bytes = fs::read(&path)?;
+        let small = brotli_size(&bytes)?;
+        let name = path.strip_prefix(&dist)?.display().to_string();
+        println!("{:>12} {small:>12}  {name}", bytes.len());
+        let place =
+            Module::ALL.iter().position(|module| name.starts_with(&format!("pkg/{}", module.id()))).unwrap_or(2);
+        sums[place].0 += bytes.len();
+        sums[place].1 += small;
+    }
+    for (at, module) in Module::ALL.into_iter().enumerate() {
+        let (raw, small) = (sums[at].0 + sums[2].0, sums[at].1 + sums[2].1);
+        println!("{raw:>12} {small:>12}  everything for {}", module.id());
+    }
+    Ok(())
+}
+
+fn brotli_size(bytes: &[u8]) -> Result<usize> {
+    let parameters = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 22, ..Default::default() };
+    let mut out = Vec::new();
+    brotli::BrotliCompress(&mut &bytes[..], &mut out, &parameters)?;
+    Ok(out.len())
+}

@@ -1,0 +1,169 @@
+//! Building the engine to wasm.
+//!
+//! ```text
+//! crates/engine ──cargo rustc──► target/wasm-webgpu/…/limn_engine.wasm ──wasm-bindgen──► target/wasm-webgpu/pkg-serve/
+//!                         └────► target/wasm-webgl/…                   ──────────────►  target/wasm-webgl/pkg-serve/
+//! ```
+//!
+//! There are two modules because WebGL2 support costs half a megabyte that most visitors never need; the page probes
+//! for WebGPU and loads one. `wasm-bindgen` runs in this process, so nobody has to install a command of exactly the
+//! right version. Costs, warm: nothing changed, nothing is done; one line changed, a few seconds (profile `serve`);
+//! profile `dist` links everything afresh, close to a minute a module.
+
+use crate::process::{self, say, seconds};
+use crate::{paths, toolchain};
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+use wasm_bindgen_cli_support::Bindgen;
+
+/// One of the two wasm modules.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Module {
+    /// Draws with WebGPU only: what most visitors load.
+    WebGpu,
+    /// Draws with WebGL2: the fallback.
+    WebGl,
+}
+
+impl Module {
+    /// Both, the one that most visitors load first.
+    pub const ALL: [Self; 2] = [Self::WebGpu, Self::WebGl];
+
+    /// Its name in URLs, folders and cargo features.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::WebGpu => "webgpu",
+            Self::WebGl => "webgl",
+        }
+    }
+
+    /// The module with this name.
+    pub fn parse(id: &str) -> Result<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|module| module.id() == id)
+            .with_context(|| format!("`{id}` is no module: webgpu or webgl"))
+    }
+
+    fn target(self) -> PathBuf {
+        paths::root().join("target").join(format!("wasm-{}", self.id()))
+    }
+
+    /// The folder that holds its glue and its wasm once it is built.
+    pub fn package(self, profile: Profile) -> PathBuf {
+        self.target().join(format!("pkg-{}", profile.id()))
+    }
+}
+
+/// How a module is built.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Profile {
+    /// Quick to rebuild.
+    Serve,
+    /// What ships.
+    Dist,
+}
+
+impl Profile {
+    /// Its name in cargo.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Serve => "serve",
+            Self::Dist => "dist",
+        }
+    }
+}
+
+/// Names of the glue and of the module itself in [`Module::package`].
+pub const FILES: [&str; 2] = ["limn_engine.js", "limn_engine_bg.wasm"];
+
+/// Builds and binds a module unless it is newer than every source.
+///
+/// A compile error comes back as an error that holds the compiler's words.
+pub fn build(module: Module, profile: Profile) -> Result<()> {
+    let start = Instant::now();
+    let package = module.package(profile);
+    // Taken before the build: a file saved while it runs counts as changed.
+    let begun = SystemTime::now();
+    let stamp = package.join(".built");
+    if newest_source()? < modified(&stamp).unwrap_or(SystemTime::UNIX_EPOCH) {
+        return Ok(());
+    }
+    toolchain::ensure_wasm()?;
+    say(format!("building the {} module (profile {})", module.id(), profile.id()));
+    let wasm = compile(module, profile)?;
+    // cargo leaves the file alone when nothing that matters changed; then the glue is good as well.
+    let fresh = matches!((modified(&wasm), modified(&package.join(FILES[1]))), (Some(a), Some(b)) if a < b);
+    if !fresh {
+        bind(&wasm, &package, profile)?;
+    }
+    fs::write(&stamp, b"")?;
+    fs::File::options().write(true).open(&stamp)?.set_modified(begun)?;
+    say(format!("the {} module is ready after {}", module.id(), seconds(start)));
+    Ok(())
+}
+
+fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
+    let target = module.target();
+    let mut command = process::cargo();
+    // `cargo rustc --crate-type`: the library is also an rlib (clippy and native tests want one), and cargo skips
+    // link-time optimisation for a library that is both.
+    command.args(["rustc", "--package", "limn-engine", "--lib", "--crate-type", "cdylib"]);
+    command.args(["--no-default-features", "--features", module.id()]);
+    command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
+    command.env("RUSTFLAGS", flags());
+    if !process::succeeds(&mut command)? {
+        // The compiler has just told the terminal; the second run, of the failing crate alone, is for the page.
+        let again = command.args(["--quiet", "--color", "never"]).output()?;
+        bail!("the {} module does not build\n\n{}", module.id(), String::from_utf8_lossy(&again.stderr).trim());
+    }
+    Ok(target.join(toolchain::WASM).join(profile.id()).join("limn_engine.wasm"))
+}
+
+/// Vector instructions are in every browser of the last years, and rustc uses them where it can prove the same bits.
+fn flags() -> String {
+    let own = "-Ctarget-feature=+simd128";
+    std::env::var("RUSTFLAGS").map_or_else(|_| own.to_owned(), |theirs| format!("{theirs} {own}"))
+}
+
+fn bind(wasm: &Path, package: &Path, profile: Profile) -> Result<()> {
+    fs::create_dir_all(package)?;
+    let mut bindgen = Bindgen::new();
+    bindgen.input_path(wasm).web(true)?.typescript(true);
+    // The page says where the wasm lies; without this the glue would hold a second path, resolved against itself.
+    bindgen.omit_default_module_path(true);
+    if profile == Profile::Dist {
+        bindgen.remove_name_section(true).remove_producers_section(true);
+    }
+    bindgen.generate(package).with_context(|| format!("wasm-bindgen could not bind {}", paths::shown(wasm)))
+}
+
+/// When the newest file changed that a module is made of.
+pub fn newest_source() -> Result<SystemTime> {
+    let mut newest = SystemTime::UNIX_EPOCH;
+    for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"] {
+        newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
+    }
+    for name in ["mesh", "formats", "document", "render", "engine"] {
+        newest = newest.max(newest_below(&paths::root().join("crates").join(name))?);
+    }
+    Ok(newest)
+}
+
+fn newest_below(folder: &Path) -> Result<SystemTime> {
+    let mut newest = SystemTime::UNIX_EPOCH;
+    for entry in fs::read_dir(folder).with_context(|| format!("could not read {}", paths::shown(folder)))? {
+        let entry = entry?;
+        // A file that is being replaced by an editor may be gone by now.
+        let Ok(data) = entry.metadata() else { continue };
+        newest = newest.max(if data.is_dir() { newest_below(&entry.path())? } else { data.modified()? });
+    }
+    // A file that was removed changes its folder's time.
+    Ok(newest.max(modified(folder).unwrap_or(newest)))
+}
+
+fn modified(path: &Path) -> Option<SystemTime> {
+    fs::metadata(path).and_then(|data| data.modified()).ok()
+}
