@@ -1,0 +1,196 @@
+//! Schemes: a split plus weights, and the one list that everything else reads.
+//!
+//! A scheme states which points with which weights make every new point, once, over any [`Connectivity`] and to any
+//! [`Sink`]. From that one statement come the points at full speed, the sparse rows, the tests and the page's menu.
+//!
+//! ```text
+//!   impl Scheme for CatmullClark { INFO, rules }        one file
+//!   entry::<CatmullClark>()                             one line in SCHEMES
+//! ```
+//!
+//! Limit: rules look at one level at a time; what they need from further up must be carried by tags.
+
+mod catmull_clark;
+mod linear;
+#[path = "loop.rs"]
+mod loop_;
+
+pub use catmull_clark::CatmullClark;
+pub use linear::Linear;
+pub use loop_::Loop;
+
+use crate::sink::{Cursor, Eval, Record, Sink, Source};
+use crate::split::{Level, Split};
+use crate::topology::{Connectivity, is_boundary};
+
+/// Every scheme, in the order of the menu.
+pub static SCHEMES: &[Entry] = &[entry::<CatmullClark>(), entry::<Loop>(), entry::<Linear>()];
+
+/// The scheme with this id.
+pub fn scheme(id: &str) -> Option<&'static Entry> {
+    SCHEMES.iter().find(|e| e.info.id == id)
+}
+
+/// What a scheme is called and promises.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Info {
+    /// The permanent id: commands and links store it.
+    pub id: &'static str,
+    /// The name that people see.
+    pub name: &'static str,
+    /// What it does: "approximating", "interpolating", "dual" or "linear".
+    pub group: &'static str,
+    /// One sentence for the menu.
+    pub summary: &'static str,
+    /// Where the rules come from.
+    pub source: &'static str,
+    /// The faces it takes.
+    pub accepts: Accepts,
+    /// Whether the vertices of a level keep their positions in the next.
+    pub interpolating: bool,
+}
+
+/// Which faces a scheme can refine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accepts {
+    /// Any polygons; always the quad split.
+    Polygons,
+    /// Triangles only; other faces have to be triangulated first.
+    Triangles,
+    /// Any polygons; the triangle split where all faces are triangles, else the quad split.
+    Both,
+}
+
+impl Info {
+    /// The split that this scheme uses on a mesh whose faces are `triangles` (all) or not; none if it cannot take it.
+    pub fn split(&self, triangles: bool) -> Option<Split> {
+        match (self.accepts, triangles) {
+            (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
+            (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
+            (Accepts::Triangles, false) => None,
+        }
+    }
+}
+
+/// What happens at the rim of an open mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Boundary {
+    /// A smooth boundary curve, rounded at corners too.
+    EdgeOnly,
+    /// A smooth boundary curve; vertices with one face are corners and stay.
+    #[default]
+    EdgeAndCorner,
+}
+
+/// What rules have to know beside the connectivity.
+#[derive(Clone, Copy, Debug)]
+pub struct Tags<'a> {
+    /// The boundary rule.
+    pub boundary: Boundary,
+    /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
+    pub sharp: &'a [bool],
+}
+
+impl Tags<'_> {
+    /// Whether `v`, which starts its turn at `start`, is kept.
+    #[inline(always)]
+    fn is_sharp<C: Connectivity>(&self, c: &C, v: u32) -> bool {
+        if (v as usize) < self.sharp.len() && self.sharp[v as usize] {
+            return true;
+        }
+        if self.boundary == Boundary::EdgeOnly {
+            return false;
+        }
+        let start = c.vertex_half_edge(v);
+        is_boundary(c.twin(start)) && is_boundary(c.twin(c.prev(start)))
+    }
+}
+
+/// A subdivision scheme.
+pub trait Scheme: 'static {
+    /// Its entry in the registry.
+    const INFO: Info;
+
+    /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
+    fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K);
+}
+
+type EvalFn = fn(&Level<'_>, Split, Tags<'_>, &mut Eval<'_>);
+type RecordFn = fn(&Level<'_>, Split, Tags<'_>, &mut Record<'_>);
+
+/// A scheme in the registry: its facts, and its rules compiled for every sink.
+#[derive(Debug)]
+pub struct Entry {
+    /// Facts.
+    pub info: Info,
+    eval: EvalFn,
+    record: RecordFn,
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Entry) -> bool {
+        self.info.id == other.info.id
+    }
+}
+
+/// Compiles a scheme into an entry.
+const fn entry<S: Scheme>() -> Entry {
+    Entry {
+        info: S::INFO,
+        eval: |level, split, tags, sink| run::<S, _>(level, split, tags, sink),
+        record: |level, split, tags, sink| run::<S, _>(level, split, tags, sink),
+    }
+}
+
+fn run<S: Scheme, K: Sink>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut K) {
+    match level {
+        Level::Base(c) => S::rules(*c, split, tags, sink),
+        Level::Quads(c) => S::rules(*c, split, tags, sink),
+        Level::Triangles(c) => S::rules(*c, split, tags, sink),
+    }
+}
+
+impl Entry {
+    /// Computes up to `quota` children's points from `cursor` on; true when all are done.
+    pub fn eval(
+        &self,
+        (level, split, tags): (&Level<'_>, Split, Tags<'_>),
+        old: &[[f32; 3]],
+        new: &mut [[f32; 3]],
+        cursor: &mut Cursor,
+        quota: &mut usize,
+    ) -> bool {
+        let mut sink = Eval::new(old, new, cursor, quota);
+        (self.eval)(level, split, tags, &mut sink);
+        sink.done()
+    }
+
+    /// Hands up to `quota` children's rows to `take`; true when all are done.
+    pub fn rows(
+        &self,
+        (level, split, tags): (&Level<'_>, Split, Tags<'_>),
+        take: &mut dyn FnMut(u32, &[(Source, f64)]),
+        cursor: &mut Cursor,
+        quota: &mut usize,
+    ) -> bool {
+        let mut sink = Record::new(take, cursor, quota);
+        (self.record)(level, split, tags, &mut sink);
+        sink.done()
+    }
+}
+
+/// The boundary curve rule shared by Catmull-Clark and Loop, the uniform cubic B-spline: 3/4 of the vertex, 1/8 of each
+/// neighbour along the boundary. Neighbours first: their sum does not depend on the side, so copies of a split vertex
+/// stay equal.
+#[inline(always)]
+fn cubic_boundary<C: Connectivity>(c: &C, v: u32, arriving: u32, row: &mut impl crate::sink::Row) {
+    row.old(c.origin(c.next(c.vertex_half_edge(v))), 0.125);
+    row.old(c.origin(arriving), 0.125);
+    row.old(v, 0.75);
+}
+
+/// The arriving boundary half-edge at `v`, if `v` lies on a boundary. Cost: the valence there, one step elsewhere.
+#[inline(always)]
+fn boundary_arrival<C: Connectivity>(c: &C, v: u32) -> Option<u32> {
+    if is_boundary(c.twin(c.vertex_half_edge(v))) { c.turn(v, |_| {}) } else { None }
+}

@@ -1,0 +1,179 @@
+//! Where a scheme's weights go: the same statement computes points at full speed or is written down as sparse rows.
+//!
+//! A scheme states its rules once, to a [`Sink`]: pass by pass, and in each pass one [`Row`] of weights for every new point.
+//! [`Eval`] multiplies and adds at once (f32 triples, monomorphised, nothing stored); [`Record`] hands every row to a
+//! closure (colours, texture coordinates, f64, tests; later the GPU's tables and the reverse).
+//!
+//! ```text
+//!   scheme.rules ──> sink.pass(first child, count, |origin, row| row.old(v, w) ...)
+//!                       ├── Eval    sum += w * point
+//!                       └── Record  [(Old v, w), (New c, w) ...]
+//! ```
+//!
+//! Both stop after a quota of rows and resume where they stopped ([`Cursor`]), which is what lets a long refinement yield.
+
+/// One new point's weights. They add up to one.
+pub trait Row {
+    /// Adds `weight` times vertex `v` of the level being refined.
+    fn old(&mut self, v: u32, weight: f64);
+    /// Adds `weight` times child `c`, which an *earlier pass* gave.
+    fn new(&mut self, c: u32, weight: f64);
+    /// Multiplies everything added so far.
+    fn scale(&mut self, factor: f64);
+}
+
+/// Takes rows, pass by pass.
+pub trait Sink {
+    /// The rows it hands out.
+    type Row<'r>: Row;
+    /// States the rules of children `first .. first + count`: `rule(i, row)` fills the row of child `first + i`.
+    fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Self::Row<'r>));
+}
+
+/// Where a run over all passes stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cursor {
+    pass: u32,
+    row: u32,
+}
+
+/// Decides which rows of which pass to run now.
+#[derive(Debug)]
+struct Slice<'a> {
+    cursor: &'a mut Cursor,
+    quota: &'a mut usize,
+    seen: u32,
+}
+
+impl Slice<'_> {
+    /// The rows to run of a pass of `count`, and moves the cursor past them.
+    fn take(&mut self, count: u32) -> std::ops::Range<u32> {
+        let pass = self.seen;
+        self.seen += 1;
+        if pass != self.cursor.pass {
+            return 0..0;
+        }
+        let from = self.cursor.row;
+        let to = from + (count - from).min((*self.quota).min(u32::MAX as usize) as u32);
+        *self.quota -= (to - from) as usize;
+        *self.cursor = if to == count { Cursor { pass: pass + 1, row: 0 } } else { Cursor { pass, row: to } };
+        from..to
+    }
+
+    fn done(&self) -> bool {
+        self.cursor.pass == self.seen
+    }
+}
+
+/// Computes points as the rules are stated. Sums run in the order of the statement.
+#[derive(Debug)]
+pub struct Eval<'a> {
+    old: &'a [[f32; 3]],
+    new: &'a mut [[f32; 3]],
+    slice: Slice<'a>,
+}
+
+impl<'a> Eval<'a> {
+    /// Reads `old`, writes `new` (all children), runs at most `quota` rows from `cursor` on.
+    pub fn new(old: &'a [[f32; 3]], new: &'a mut [[f32; 3]], cursor: &'a mut Cursor, quota: &'a mut usize) -> Self {
+        Eval { old, new, slice: Slice { cursor, quota, seen: 0 } }
+    }
+
+    /// Whether every pass that was stated is complete.
+    pub fn done(&self) -> bool {
+        self.slice.done()
+    }
+}
+
+/// A running sum.
+#[derive(Debug)]
+pub struct Sum<'r> {
+    old: &'r [[f32; 3]],
+    new: &'r [[f32; 3]],
+    sum: [f32; 3],
+}
+
+impl Row for Sum<'_> {
+    #[inline(always)]
+    fn old(&mut self, v: u32, weight: f64) {
+        let (p, w) = (self.old[v as usize], weight as f32);
+        self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
+    }
+    #[inline(always)]
+    fn new(&mut self, c: u32, weight: f64) {
+        let (p, w) = (self.new[c as usize], weight as f32);
+        self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
+    }
+    #[inline(always)]
+    fn scale(&mut self, factor: f64) {
+        self.sum = self.sum.map(|x| x * factor as f32);
+    }
+}
+
+impl Sink for Eval<'_> {
+    type Row<'r> = Sum<'r>;
+    #[inline(always)]
+    fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Sum<'r>)) {
+        for i in self.slice.take(count) {
+            let mut row = Sum { old: self.old, new: self.new, sum: [0.0; 3] };
+            rule(i, &mut row);
+            let sum = row.sum;
+            self.new[(first + i) as usize] = sum;
+        }
+    }
+}
+
+/// What a weight multiplies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A vertex of the level being refined.
+    Old(u32),
+    /// A child of an earlier pass.
+    New(u32),
+}
+
+/// Hands every row to a closure as it is stated.
+pub struct Record<'a> {
+    take: &'a mut dyn FnMut(u32, &[(Source, f64)]),
+    row: Entries,
+    slice: Slice<'a>,
+}
+
+impl<'a> Record<'a> {
+    /// Calls `take(child, weights)` for at most `quota` rows from `cursor` on.
+    pub fn new(take: &'a mut dyn FnMut(u32, &[(Source, f64)]), cursor: &'a mut Cursor, quota: &'a mut usize) -> Self {
+        Record { take, row: Entries::default(), slice: Slice { cursor, quota, seen: 0 } }
+    }
+
+    /// Whether every pass that was stated is complete.
+    pub fn done(&self) -> bool {
+        self.slice.done()
+    }
+}
+
+/// The weights of one row, written down.
+#[derive(Clone, Debug, Default)]
+pub struct Entries(Vec<(Source, f64)>);
+
+impl Row for Entries {
+    fn old(&mut self, v: u32, weight: f64) {
+        self.0.push((Source::Old(v), weight));
+    }
+    fn new(&mut self, c: u32, weight: f64) {
+        self.0.push((Source::New(c), weight));
+    }
+    fn scale(&mut self, factor: f64) {
+        self.0.iter_mut().for_each(|(_, w)| *w *= factor);
+    }
+}
+
+impl Sink for Record<'_> {
+    type Row<'r> = Entries;
+    fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Entries)) {
+        for i in self.slice.take(count) {
+            self.row.0.clear();
+            rule(i, &mut self.row);
+            (self.take)(first + i, &self.row.0);
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! Indexed half-edges, structure of arrays, and the view of them that every scheme reads.
+//!
+//! A half-edge is a corner of a face together with the side that leaves it, so half-edge `h` *is* corner `h` of the face
+//! list and faces are contiguous runs. The twin is the same side seen from the neighbouring face.
+//!
+//! ```text
+//!        next(h)            h leaves origin(h) and bounds face(h), which lies to its left
+//!     <-----------.
+//!     |   face    ^ h       twin(h): the neighbour's half-edge, or BOUNDARY | .. = !rank
+//!     |           |  | twin(h)          on a boundary; rank numbers the boundary half-edges
+//!     `---------->o  v
+//!       prev(h)   origin(h)
+//! ```
+//!
+//! Around a vertex one turns counter-clockwise by `h -> twin(prev(h))`. The half-edge stored for a vertex is the one to
+//! start at: on a boundary, the outgoing boundary half-edge, from which the turn visits every face.
+//!
+//! [`Connectivity`] is what a scheme sees. [`Topology`] stores everything (level 0, any polygons); the implicit levels of
+//! [`crate::split`] answer most of it by arithmetic. Limit: 2^31 - 1 half-edges a level (the top bit says boundary).
+
+use std::ops::Range;
+
+/// The bit of a twin that says there is none.
+pub const BOUNDARY: u32 = 1 << 31;
+
+/// Whether a value of [`Connectivity::twin`] means that the half-edge lies on a boundary.
+#[inline(always)]
+pub fn is_boundary(twin: u32) -> bool {
+    twin & BOUNDARY != 0
+}
+
+/// The rank of a boundary half-edge, from its twin field.
+#[inline(always)]
+pub fn boundary_rank(twin: u32) -> u32 {
+    !twin
+}
+
+/// Read access to the half-edges of one level. All ids are dense and 0-based; every answer takes constant time.
+pub trait Connectivity {
+    /// Number of vertices.
+    fn vertices(&self) -> u32;
+    /// Number of edges.
+    fn edges(&self) -> u32;
+    /// Number of faces.
+    fn faces(&self) -> u32;
+    /// Number of half-edges (corners).
+    fn half_edges(&self) -> u32;
+    /// Number of half-edges without a twin.
+    fn boundary_half_edges(&self) -> u32;
+    /// The half-edges of face `f`, in order.
+    fn face_half_edges(&self, f: u32) -> Range<u32>;
+    /// The face left of `h`.
+    fn face(&self, h: u32) -> u32;
+    /// The following half-edge of the same face.
+    fn next(&self, h: u32) -> u32;
+    /// The preceding half-edge of the same face.
+    fn prev(&self, h: u32) -> u32;
+    /// The opposite half-edge, or a value with [`BOUNDARY`] set that holds `!rank`.
+    fn twin(&self, h: u32) -> u32;
+    /// The vertex that `h` leaves.
+    fn origin(&self, h: u32) -> u32;
+    /// The edge that `h` is one side of.
+    fn edge(&self, h: u32) -> u32;
+    /// The half-edge to start turning at (module text).
+    fn vertex_half_edge(&self, v: u32) -> u32;
+    /// The half-edge that owns edge `e`; the only one on a boundary.
+    fn edge_half_edge(&self, e: u32) -> u32;
+
+    /// Calls `visit` with the half-edges that leave `v`, counter-clockwise. Returns the last spoke if `v` lies on a
+    /// boundary: the half-edge that *arrives* at `v` along the boundary. Cost: the valence.
+    #[inline(always)]
+    fn turn(&self, v: u32, mut visit: impl FnMut(u32)) -> Option<u32> {
+        let start = self.vertex_half_edge(v);
+        let mut h = start;
+        loop {
+            visit(h);
+            let arriving = self.prev(h);
+            h = self.twin(arriving);
+            if is_boundary(h) {
+                return Some(arriving);
+            }
+            if h == start {
+                return None;
+            }
+        }
+    }
+
+    /// Counts of this level.
+    fn counts(&self) -> Counts {
+        Counts {
+            vertices: self.vertices().into(),
+            edges: self.edges().into(),
+            faces: self.faces().into(),
+            corners: self.half_edges().into(),
+            boundary: self.boundary_half_edges().into(),
+        }
+    }
+}
+
+/// How many of everything there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Vertices.
+    pub vertices: u64,
+    /// Edges.
+    pub edges: u64,
+    /// Faces.
+    pub faces: u64,
+    /// Corners of all faces (half-edges).
+    pub corners: u64,
+    /// Half-edges on a boundary.
+    pub boundary: u64,
+}
+
+impl Counts {
+    /// V - E + F.
+    pub fn euler(&self) -> i64 {
+        self.vertices as i64 - self.edges as i64 + self.faces as i64
+    }
+}
+
+/// Half-edges of a polygon mesh, every array stored. Manifold by construction: every vertex has one fan.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Topology {
+    pub(crate) offsets: Vec<u32>,
+    pub(crate) twin: Vec<u32>,
+    pub(crate) origin: Vec<u32>,
+    pub(crate) edge: Vec<u32>,
+    pub(crate) face: Vec<u32>,
+    pub(crate) vertex_half_edge: Vec<u32>,
+    pub(crate) edge_half_edge: Vec<u32>,
+    pub(crate) boundary: u32,
+}
+
+impl Topology {
+    /// The start of each face in the half-edges, and their number at the end.
+    pub fn offsets(&self) -> &[u32] {
+        &self.offsets
+    }
+
+    /// The origin of every half-edge: the corners of the faces.
+    pub fn origins(&self) -> &[u32] {
+        &self.origin
+    }
+
+    /// The number of corners that all faces have, if they agree.
+    pub fn uniform_degree(&self) -> Option<u32> {
+        let first = self.offsets.get(1)?;
+        self.offsets.windows(2).all(|w| w[1] - w[0] == *first).then_some(*first)
+    }
+
+    /// Assembles half-edges from faces and matched sides. `class[h]` names the vertex before splitting, `mate[h]` the
+    /// opposite half-edge or `u32::MAX`. A class whose corners form several fans becomes several vertices: the first fan
+    /// keeps the place of the class in order, the others are appended. Returns also the class of every vertex.
+    /// Cost: linear.
+    pub(crate) fn assemble(offsets: Vec<u32>, class: &[u32], classes: usize, mate: &[u32]) -> (Topology, Vec<u32>) {
+        const UNSET: u32 = u32::MAX;
+        let half_edges = class.len();
+        let faces = offsets.len().saturating_sub(1);
+        let mut face = vec![0; half_edges];
+        for f in 0..faces {
+            face[offsets[f] as usize..offsets[f + 1] as usize].fill(f as u32);
+        }
+        let next = |h: u32| -> u32 {
+            let f = face[h as usize] as usize;
+            if h + 1 == offsets[f + 1] { offsets[f] } else { h + 1 }
+        };
+        let prev = |h: u32| -> u32 {
+            let f = face[h as usize] as usize;
+            if h == offsets[f] { offsets[f + 1] - 1 } else { h - 1 }
+        };
+
+        // Classes in use keep their order: that is the file's numbering with isolated vertices left out.
+        let mut id = vec![UNSET; classes];
+        for &c in class {
+            id[c as usize] = 0;
+        }
+        let mut vertex_class = Vec::new();
+        for (c, slot) in id.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
+            *slot = vertex_class.len() as u32;
+            vertex_class.push(c as u32);
+        }
+
+        let mut origin = vec![UNSET; half_edges];
+        let mut vertex_half_edge = vec![UNSET; vertex_class.len()];
+        for seed in 0..half_edges as u32 {
+            if origin[seed as usize] != UNSET {
+                continue;
+            }
+            let c = class[seed as usize];
+            let mut v = id[c as usize];
+            if vertex_half_edge[v as usize] != UNSET {
+                v = vertex_class.len() as u32;
+                vertex_class.push(c);
+                vertex_half_edge.push(UNSET);
+            }
+            // Clockwise to the boundary, if there is one; then counter-clockwise over the whole fan.
+            let mut start = seed;
+            loop {
+                let t = mate[start as usize];
+                if t == UNSET {
+                    break;
+                }
+                start = next(t);
+                if start == seed {
+                    break;
+                }
+            }
+            vertex_half_edge[v as usize] = start;
+            let mut h = start;
+            loop {
+                origin[h as usize] = v;
+                h = mate[prev(h) as usize];
+                if h == UNSET || h == start {
+                    break;
+                }
+            }
+        }
+
+        let mut twin = vec![0; half_edges];
+        let mut edge = vec![0; half_edges];
+        let mut edge_half_edge = Vec::with_capacity(half_edges / 2);
+        let mut boundary = 0;
+        for h in 0..half_edges as u32 {
+            let t = mate[h as usize];
+            if t == UNSET {
+                twin[h as usize] = !boundary;
+                boundary += 1;
+            } else {
+                twin[h as usize] = t;
+            }
+            edge[h as usize] = if t < h {
+                edge[t as usize]
+            } else {
+                edge_half_edge.push(h);
+                edge_half_edge.len() as u32 - 1
+            };
+        }
+        let topology = Topology { offsets, twin, origin, edge, face, vertex_half_edge, edge_half_edge, boundary };
+        (topology, vertex_class)
+    }
+}
+
+impl Connectivity for Topology {
+    #[inline(always)]
+    fn vertices(&self) -> u32 {
+        self.vertex_half_edge.len() as u32
+    }
+    #[inline(always)]
+    fn edges(&self) -> u32 {
+        self.edge_half_edge.len() as u32
+    }
+    #[inline(always)]
+    fn faces(&self) -> u32 {
+        self.offsets.len().saturating_sub(1) as u32
+    }
+    #[inline(always)]
+    fn half_edges(&self) -> u32 {
+        self.twin.len() as u32
+    }
+    #[inline(always)]
+    fn boundary_half_edges(&self) -> u32 {
+        self.boundary
+    }
+    #[inline(always)]
+    fn face_half_edges(&self, f: u32) -> Range<u32> {
+        self.offsets[f as usize]..self.offsets[f as usize + 1]
+    }
+    #[inline(always)]
+    fn face(&self, h: u32) -> u32 {
+        self.face[h as usize]
+    }
+    #[inline(always)]
+    fn next(&self, h: u32) -> u32 {
+        let f = self.face_half_edges(self.face(h));
+        if h + 1 == f.end { f.start } else { h + 1 }
+    }
+    #[inline(always)]
+    fn prev(&self, h: u32) -> u32 {
+        let f = self.face_half_edges(self.face(h));
+        if h == f.start { f.end - 1 } else { h - 1 }
+    }
+    #[inline(always)]
+    fn twin(&self, h: u32) -> u32 {
+        self.twin[h as usize]
+    }
+    #[inline(always)]
+    fn origin(&self, h: u32) -> u32 {
+        self.origin[h as usize]
+    }
+    #[inline(always)]
+    fn edge(&self, h: u32) -> u32 {
+        self.edge[h as usize]
+    }
+    #[inline(always)]
+    fn vertex_half_edge(&self, v: u32) -> u32 {
+        self.vertex_half_edge[v as usize]
+    }
+    #[inline(always)]
+    fn edge_half_edge(&self, e: u32) -> u32 {
+        self.edge_half_edge[e as usize]
+    }
+}
+
+/// An invariant of the half-edges that does not hold, with the element where it was seen.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{rule} fails at {element} {id}")]
+pub struct Broken {
+    /// The invariant.
+    pub rule: &'static str,
+    /// "half-edge", "vertex", "edge", "face" or "rank".
+    pub element: &'static str,
+    /// Which one.
+    pub id: u32,
+}
+
+/// Checks every invariant that [`Connectivity`] promises, on any level. Cost: linear.
+///
+/// # Errors
+/// The first invariant that fails.
+pub fn validate(c: &impl Connectivity) -> Result<(), Broken> {
+    let check = |ok: bool, rule, element, id| if ok { Ok(()) } else { Err(Broken { rule, element, id }) };
+    let mut ranks = vec![false; c.boundary_half_edges() as usize];
+    let mut sides = vec![0u32; c.edges() as usize];
+    let mut corners = vec![0u32; c.vertices() as usize];
+    for h in 0..c.half_edges() {
+        check(c.next(c.prev(h)) == h && c.prev(c.next(h)) == h, "next and prev are inverse", "half-edge", h)?;
+        check(c.face_half_edges(c.face(h)).contains(&h), "a half-edge lies in its face", "half-edge", h)?;
+        check(c.face(c.next(h)) == c.face(h), "next stays in the face", "half-edge", h)?;
+        check(c.origin(h) < c.vertices(), "origin is a vertex", "half-edge", h)?;
+        check(c.edge(h) < c.edges(), "edge is an edge", "half-edge", h)?;
+        check(c.origin(h) != c.origin(c.next(h)), "a half-edge joins two vertices", "half-edge", h)?;
+        sides[c.edge(h) as usize] += 1;
+        corners[c.origin(h) as usize] += 1;
+        let t = c.twin(h);
+        if is_boundary(t) {
+            let r = boundary_rank(t);
+            check(r < c.boundary_half_edges(), "rank is in range", "half-edge", h)?;
+            check(!ranks[r as usize], "ranks are distinct", "rank", r)?;
+            ranks[r as usize] = true;
+            check(c.edge_half_edge(c.edge(h)) == h, "a boundary half-edge owns its edge", "half-edge", h)?;
+        } else {
+            check(t < c.half_edges() && t != h && c.twin(t) == h, "twin is an involution", "half-edge", h)?;
+            check(c.edge(t) == c.edge(h), "twins share their edge", "half-edge", h)?;
+            check(c.origin(t) == c.origin(c.next(h)), "twins run in opposite directions", "half-edge", h)?;
+        }
+    }
+    check(ranks.iter().all(|&seen| seen), "every rank is taken", "rank", 0)?;
+    let mut first = 0;
+    for f in 0..c.faces() {
+        let r = c.face_half_edges(f);
+        check(r.start == first && r.len() >= 3, "faces are contiguous and have three corners", "face", f)?;
+        first = r.end;
+    }
+    check(first == c.half_edges(), "faces cover the half-edges", "face", c.faces())?;
+    for e in 0..c.edges() {
+        let h = c.edge_half_edge(e);
+        check(h < c.half_edges() && c.edge(h) == e, "an edge's half-edge is its own", "edge", e)?;
+        let expected = if is_boundary(c.twin(h)) { 1 } else { 2 };
+        check(sides[e as usize] == expected, "an edge has its two sides, one on a boundary", "edge", e)?;
+    }
+    for v in 0..c.vertices() {
+        let start = c.vertex_half_edge(v);
+        check(start < c.half_edges() && c.origin(start) == v, "a vertex's half-edge leaves it", "vertex", v)?;
+        let (mut seen, mut own, limit) = (0u32, true, corners[v as usize]);
+        let mut h = start;
+        loop {
+            seen += 1;
+            own &= c.origin(h) == v;
+            h = c.twin(c.prev(h));
+            if is_boundary(h) {
+                own &= is_boundary(c.twin(start));
+                break;
+            }
+            if h == start || seen > limit {
+                break;
+            }
+        }
+        check(own && seen == limit, "a vertex has one fan, and its turn visits all of it", "vertex", v)?;
+    }
+    Ok(())
+}
