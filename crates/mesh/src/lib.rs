@@ -1,4 +1,48 @@
-//! limn-mesh: the kernel.
+//! limn-mesh: the kernel of Limn. Meshes, subdivision schemes, and refinement to a level.
+//!
+//! Everything follows from one idea: **a scheme is a split plus weights**. A [`split`] makes the children's connectivity by
+//! index arithmetic; a [`scheme`] says which points with which weights make every new point. The statement is written once
+//! and runs as a fast evaluator or records sparse rows ([`sink`]).
+//!
+//! ```text
+//!   Soup ──build──> Mesh ──predict──> Prediction
+//!  (file)            │
+//!                    └──Job::step ... ──> Refined  (points, faces, colours, texture coordinates of one level)
+//! ```
+//!
+//! ```
+//! use limn_mesh::{Boundary, Mesh, Plan, Weld, refine, scheme, shapes};
+//! use std::sync::Arc;
+//!
+//! let cube = (shapes::shape("cube").unwrap().build)();
+//! let (mesh, _report) = Mesh::build(&cube, Weld::Off)?;
+//! let plan = Plan { scheme: scheme("catmull-clark").unwrap(), boundary: Boundary::default(), level: 3 };
+//! let refined = refine(&Arc::new(mesh), plan, 1 << 30)?;
+//! assert_eq!(refined.counts.faces, 6 * 4 * 4 * 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! No I/O, clock, GPU or browser in here. Native and wasm give the same bits: sums run in a fixed order, no fused
+//! multiply-add, transcendental functions from `libm`, no hash map is iterated.
+
+mod connect;
+pub mod mesh;
+pub mod refine;
+pub mod scheme;
 pub mod shapes;
+pub mod sink;
 pub mod soup;
+pub mod split;
+pub mod topology;
 pub mod triangulate;
+mod weld;
+
+pub use mesh::{Mesh, Note, Report, Stats, TopologyError};
+pub use refine::{Faces, Job, Plan, Prediction, RefineError, Refined, UvValues, grouped, predict, refine};
+pub use scheme::{Accepts, Boundary, Entry, Info, SCHEMES, scheme};
+pub use shapes::{SHAPES, Shape, shape};
+pub use soup::{NONE, Soup};
+pub use split::Split;
+pub use topology::{Connectivity, Counts, Topology};
+pub use triangulate::{triangulate, triangulate_soup};
+pub use weld::{Weld, bounds};
