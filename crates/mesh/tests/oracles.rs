@@ -1,0 +1,66 @@
+//! Positions against what OpenSubdiv, CGAL and OpenMesh computed (tests/oracles: source, options and mesh in each file).
+
+use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme};
+use serde_json::Value;
+use std::sync::Arc;
+
+fn triples(v: &Value) -> Vec<[f64; 3]> {
+    v.as_array().unwrap().iter().map(|p| std::array::from_fn(|k| p[k].as_f64().unwrap())).collect()
+}
+
+/// The largest distance from a point of `ours` to the nearest of `theirs`, each taken once.
+fn distance(ours: &[[f64; 3]], theirs: &[[f64; 3]]) -> f64 {
+    assert_eq!(ours.len(), theirs.len());
+    let mut free = vec![true; theirs.len()];
+    let mut worst: f64 = 0.0;
+    for p in ours {
+        let d = |q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>();
+        let (i, q) = theirs.iter().enumerate().filter(|(i, _)| free[*i]).min_by(|a, b| d(a.1).total_cmp(&d(b.1))).unwrap();
+        free[i] = false;
+        worst = worst.max(d(q).sqrt());
+    }
+    worst
+}
+
+fn check(json: &str) {
+    let oracle: Value = serde_json::from_str(json).unwrap();
+    let positions = triples(&oracle["mesh"]["positions"]);
+    let faces: Vec<Vec<u32>> = serde_json::from_value(oracle["mesh"]["faces"].clone()).unwrap();
+    let soup = Soup::from_faces(positions.iter().map(|p| p.map(|x| x as f32)).collect(), &faces);
+    let (mesh, report) = Mesh::build(&soup, Weld::Off).unwrap();
+    assert_eq!(report.notes, []);
+    let mesh = Arc::new(mesh);
+    let id = if oracle["scheme"] == "loop" { "loop" } else { "catmull-clark" };
+    // CGAL and OpenMesh round boundary corners as OpenSubdiv's EDGE_ONLY does.
+    let corner = oracle["options"]["vtxBoundary"].as_str() == Some("EDGE_AND_CORNER");
+    let boundary = if corner { Boundary::EdgeAndCorner } else { Boundary::EdgeOnly };
+    for theirs in oracle["levels"].as_array().unwrap() {
+        let level = theirs["level"].as_u64().unwrap() as u32;
+        let plan = Plan { scheme: scheme(id).unwrap(), boundary, level };
+        // Every library was given the positions rounded to f32.
+        let rounded: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        let exact = limn_mesh::refine::evaluate(&mesh, plan, &rounded, |_| ()).unwrap();
+        let theirs = triples(&theirs["positions"]);
+        let d = distance(&exact, &theirs);
+        assert!(d < 1e-9, "{}: level {level} is off by {d} in f64", oracle["source"]);
+        let fast = refine(&mesh, plan, u64::MAX).unwrap();
+        let fast: Vec<_> = fast.points.iter().map(|p| p.map(f64::from)).collect();
+        let d = distance(&fast, &theirs);
+        assert!(d < 1e-6, "{}: level {level} is off by {d} in f32", oracle["source"]);
+    }
+}
+
+macro_rules! oracles {
+    ($($name:ident)*) => { $(
+        #[test]
+        fn $name() {
+            check(include_str!(concat!("../../../tests/oracles/", stringify!($name), ".json")));
+        }
+    )* };
+}
+
+oracles! {
+    osd_cube_catmark osd_tetra_catmark osd_grid3_catmark_edgeonly osd_grid3_catmark_edgecorner
+    osd_icosa_loop osd_tetra_loop osd_gridtri3_loop_edgeonly osd_gridtri3_loop_edgecorner
+    cgal_cube_catmark cgal_tetra_catmark cgal_tetra_loop cgal_gridtri3_loop openmesh_icosa_loop
+}
