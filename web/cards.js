@@ -1,0 +1,65 @@
+// @ts-check
+// Quiet cards for errors and import reports: each stays until it is dismissed, or until one with the same id replaces it.
+// Progress stands above the ruler, with Cancel. What changes is also said to screen readers, once.
+
+import { byId, el, setText } from "./dom.js";
+import { pick } from "./files.js";
+
+/** @typedef {import("./protocol.js").Card} Card */
+/** @typedef {import("./protocol.js").Progress} Progress */
+
+/** @param {string} text */
+export function say(text) {
+  setText(byId("live"), text);
+}
+
+/** @param {Card} card */
+export function show(card) {
+  const cards = byId("cards");
+  const id = `card-${card.id}`;
+  const old = document.getElementById(id);
+  if (!card.title && !card.lines.length) {
+    old?.remove();
+    return;
+  }
+  const made = el("article", { id, className: `card ${card.kind}`, role: card.kind === "error" ? "alert" : "group" },
+    el("h2", {}, card.title),
+    ...(card.lines.length > 1 ? [el("ul", {}, ...card.lines.map((line) => el("li", {}, line)))] : card.lines.map((line) => el("p", {}, line))),
+    el("div", { className: "row" },
+      ...(card.ask ? [el("button", { type: "button", className: "main", onclick: () => pick() }, `Open ${card.ask}`)] : []),
+      el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => made.remove() }, "Dismiss"),
+    ),
+  );
+  if (old) old.replaceWith(made);
+  else cards.prepend(made);
+  if (card.kind === "note") say(card.title);
+}
+
+/** Dismisses the newest card. @returns {boolean} whether there was one */
+export function dismiss() {
+  const newest = byId("cards").firstElementChild;
+  newest?.remove();
+  return newest !== null;
+}
+
+/** A line that goes away by itself, for what a visitor has just done. @param {string} text */
+export function toast(text) {
+  say(text);
+  document.getElementById("toast")?.remove();
+  const made = el("p", { id: "toast", "aria-hidden": true }, text);
+  document.body.append(made);
+  setTimeout(() => made.remove(), 2_400 + text.length * 30);
+}
+
+/** @param {Progress} progress */
+export function wait(progress) {
+  const box = byId("progress");
+  const was = box.hidden;
+  box.hidden = !progress.what;
+  byId("count").hidden = !box.hidden;
+  if (!progress.what) return;
+  const share = progress.done >= 0 ? `  ${Math.floor(progress.done * 100)}%` : "";
+  setText(byId("progress-what"), progress.what + share);
+  byId("cancel").hidden = !progress.cancel;
+  if (was) say(progress.what);
+}

@@ -1,0 +1,255 @@
+// @ts-check
+// The engine's surroundings: loads the one of the two modules that this browser can draw with, hands it the page's messages,
+// and gives it its turns. Long work comes in slices of a few milliseconds; between two of them the thread takes messages, so
+// input, Cancel and drawing go on. Runs in a worker, or on the page where workers cannot draw.
+
+/** @typedef {import("./protocol.js").ToEngine} ToEngine */
+/** @typedef {import("./protocol.js").FromEngine} FromEngine */
+/** @typedef {import("./protocol.js").NamedFile} NamedFile */
+/** @typedef {import("./protocol.js").Renderer} Renderer */
+/** @typedef {import("../pkg/webgpu/limn_engine.js").Engine} Engine */
+
+/**
+ * What the engine asks of its surroundings, beside the messages that go on to the page.
+ * @typedef {{ type: "fetch", url: string, turn: number }
+ *   | { type: "decode", index: number, mime: string, bytes: Uint8Array<ArrayBuffer>, turn: number }
+ *   | { type: "png", name: string }} Wish
+ */
+
+/** One slice of work, in milliseconds. */
+const SLICE = 8;
+/** The most that is read from an address, in bytes. */
+const MOST_FETCHED = 1 << 30;
+
+/**
+ * @param {(message: FromEngine, transfer?: Transferable[]) => void} post
+ * @returns {(message: ToEngine) => void} takes the page's messages
+ */
+export function createHost(post) {
+  /** @type {Engine | null} */
+  let engine = null;
+  /** @type {OffscreenCanvas | HTMLCanvasElement | null} */
+  let canvas = null;
+  /** @type {ToEngine[]} */
+  const waiting = [];
+  let dead = false;
+  let working = false;
+  let framing = false;
+  let drawn = false;
+  const turns = new MessageChannel();
+
+  /** @param {unknown} error */
+  const fault = (error) => {
+    if (dead) return;
+    dead = true;
+    post({ type: "fault", kind: "trap", message: error instanceof Error ? error.message : String(error) });
+  };
+
+  /** Every call into the engine: a trap ends it. @param {(engine: Engine) => void} call */
+  const enter = (call) => {
+    if (dead || !engine) return;
+    try {
+      call(engine);
+    } catch (error) {
+      fault(error);
+    }
+    next();
+  };
+
+  const next = () => {
+    if (dead || !engine) return;
+    if (!working && engine.has_work()) {
+      working = true;
+      turns.port2.postMessage(0);
+    }
+    if (!framing && engine.wants_frame()) {
+      framing = true;
+      requestAnimationFrame(() => {
+        framing = false;
+        enter((e) => {
+          if (e.frame() && !drawn) {
+            drawn = true;
+            post({ type: "drawn" });
+          }
+        });
+      });
+    }
+  };
+  turns.port1.onmessage = () => {
+    working = false;
+    enter((e) => e.work(SLICE));
+  };
+
+  /** @param {FromEngine | Wish} message */
+  const emit = (message) => {
+    if (message.type === "fault") dead = true;
+    if (message.type === "fetch") void download(message.url, message.turn);
+    else if (message.type === "decode") void decode(message);
+    else if (message.type === "png") void picture(message.name);
+    else if (message.type === "file") post(message, [message.bytes.buffer]);
+    else post(message);
+  };
+
+  /** @param {string} url @param {number} turn */
+  const download = async (url, turn) => {
+    /** @type {Uint8Array[]} */
+    const parts = [];
+    try {
+      const answer = await fetch(url, { mode: "cors", credentials: "omit" });
+      if (!answer.ok) {
+        enter((e) => e.fetched(url, turn, undefined, `the server answered ${answer.status} ${answer.statusText}`.trim()));
+        return;
+      }
+      const total = Number(answer.headers.get("content-length")) || 0;
+      const reader = answer.body?.getReader();
+      let got = 0;
+      for (;;) {
+        const { done, value } = (await reader?.read()) ?? { done: true, value: undefined };
+        if (done || !value) break;
+        parts.push(value);
+        got += value.length;
+        if (got > MOST_FETCHED) throw new RangeError("the file is larger than 1 GB");
+        post({ type: "progress", what: `Reading ${new URL(url, location.href).pathname.split("/").pop()}`, done: total ? got / total : -1, cancel: true });
+      }
+      const bytes = new Uint8Array(got);
+      parts.reduce((at, part) => (bytes.set(part, at), at + part.length), 0);
+      enter((e) => e.fetched(url, turn, bytes, ""));
+    } catch (error) {
+      const why = error instanceof RangeError
+        ? error.message
+        : "it could not be reached, or its server does not allow other sites to read it (CORS); download the file and drop it here instead";
+      enter((e) => e.fetched(url, turn, undefined, why));
+    }
+  };
+
+  /** @param {Extract<Wish, { type: "decode" }>} wish */
+  const decode = async ({ index, mime, bytes, turn }) => {
+    try {
+      const options = /** @type {const} */ ({ premultiplyAlpha: "none", colorSpaceConversion: "none" });
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: mime }), options);
+      const shrink = Math.min(1, 4096 / Math.max(bitmap.width, bitmap.height));
+      const width = Math.max(1, Math.round(bitmap.width * shrink));
+      const height = Math.max(1, Math.round(bitmap.height * shrink));
+      const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+      if (!context) throw new Error("no 2D canvas");
+      context.drawImage(bitmap, 0, 0, width, height);
+      bitmap.close();
+      const pixels = new Uint8Array(context.getImageData(0, 0, width, height).data.buffer);
+      enter((e) => e.decoded(turn, index, width, height, pixels));
+    } catch {
+      enter((e) => e.decoded(turn, index, 0, 0, new Uint8Array()));
+    }
+  };
+
+  /** The canvas as a PNG; its picture was drawn in this very task. @param {string} name */
+  const picture = async (name) => {
+    try {
+      if (!canvas) return;
+      const blob = "convertToBlob" in canvas
+        ? await canvas.convertToBlob({ type: "image/png" })
+        : await new Promise((done) => /** @type {HTMLCanvasElement} */ (canvas).toBlob(done, "image/png"));
+      const bytes = new Uint8Array(await /** @type {Blob} */ (blob).arrayBuffer());
+      post({ type: "file", name, mime: "image/png", bytes }, [bytes.buffer]);
+    } catch (error) {
+      post({ type: "card", card: { id: "png", kind: "error", title: "The picture could not be saved", lines: [String(error)], ask: "" } });
+    }
+  };
+
+  /** @param {Extract<ToEngine, { type: "start" }>} start */
+  const begin = async (start) => {
+    canvas = start.canvas;
+    const renderer = start.renderer ?? (await probe());
+    const folder = renderer === "webgpu" ? "webgpu" : "webgl";
+    try {
+      const base = new URL(`../pkg/${folder}/`, import.meta.url);
+      const wasm = fetch(new URL("limn_engine_bg.wasm", base));
+      const module = await import(new URL("limn_engine.js", base).href);
+      await module.default({ module_or_path: wasm });
+      const { width, height, scale, insets } = start.size;
+      engine = await module.Engine.create(canvas, renderer, width, height, scale, insets, start.theme, emit);
+    } catch (error) {
+      dead = true;
+      post({ type: "fault", kind: "renderer", message: `${renderer === "webgpu" ? "WebGPU" : "WebGL2"}: ${error instanceof Error ? error.message : error}` });
+      return;
+    }
+    // Messages that came meanwhile wait until the files are read: the document comes first.
+    const files = await read(start.files);
+    enter((e) => e.replay(start.text, start.notice, files.names, files.bytes));
+    for (const message of waiting.splice(0)) deliver(message);
+  };
+
+  /** @param {ToEngine} message */
+  const deliver = (message) => {
+    if (dead) return;
+    if (message.type === "start") {
+      void begin(message);
+      return;
+    }
+    if (!engine) {
+      waiting.push(message);
+      return;
+    }
+    switch (message.type) {
+      case "open":
+      case "reload": {
+        const again = message.type === "reload";
+        if (message.files[0]) post({ type: "progress", what: `Reading ${message.files[0].name}`, done: -1, cancel: false });
+        void read(message.files).then(({ names, bytes, failed }) => {
+          if (failed) post({ type: "card", card: { id: "read", kind: "error", title: `${failed} could not be read`, lines: ["The browser gave no bytes: it may have moved or changed; drop it again."], ask: "" } });
+          enter((e) => e.open(names, bytes, again));
+        });
+        break;
+      }
+      case "replay":
+        enter((e) => e.replay(message.text, "", [], []));
+        break;
+      case "cmd":
+        enter((e) => e.command(message.text, message.echo ?? false));
+        break;
+      case "input":
+        enter((e) => e.input(message.batch));
+        break;
+      case "size": {
+        const { width, height, scale, insets } = message.size;
+        enter((e) => e.resize(width, height, scale, insets));
+        break;
+      }
+      case "theme":
+        enter((e) => e.theme(message.theme));
+        break;
+      case "cancel":
+        enter((e) => e.cancel());
+        post({ type: "pong" });
+        break;
+      case "ping":
+        post({ type: "pong" });
+        break;
+    }
+  };
+  return deliver;
+}
+
+/** Which of the two modules this browser can draw with. @returns {Promise<Renderer>} */
+async function probe() {
+  try {
+    return (await navigator.gpu?.requestAdapter()) ? "webgpu" : "webgl2";
+  } catch {
+    return "webgl2";
+  }
+}
+
+/** @param {NamedFile[]} files */
+async function read(files) {
+  /** @type {string[]} */ const names = [];
+  /** @type {Uint8Array[]} */ const bytes = [];
+  let failed = "";
+  for (const { name, file } of files) {
+    try {
+      bytes.push(new Uint8Array(await file.arrayBuffer()));
+      names.push(name);
+    } catch {
+      failed ||= name;
+    }
+  }
+  return { names, bytes, failed };
+}

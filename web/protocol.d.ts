@@ -1,0 +1,185 @@
+/**
+ * What the page and the engine say to each other: the types of crates/engine/src/protocol.rs, where each message is
+ * described. The page never computes from these values; it shows them and sends command texts that it was given.
+ */
+
+export type Renderer = "webgpu" | "webgl2";
+
+/** A file by the name that its siblings know it by ("textures/wood.png" for a file in a dropped folder). */
+export interface NamedFile {
+  name: string;
+  file: File;
+  /** Where the browser gives one: reads the file anew after it changed on disk. Stays on the page. */
+  handle?: FileSystemFileHandle;
+}
+
+/** CSS pixels unless said otherwise. */
+export interface Size {
+  /** Device pixels of the canvas. */
+  width: number;
+  height: number;
+  /** Device pixels per CSS pixel. */
+  scale: number;
+  /** What the page's furniture covers at each side: the model is centred in the rest. */
+  insets: [top: number, right: number, bottom: number, left: number];
+}
+
+/** What the page sends. */
+export type ToEngine =
+  | {
+      type: "start";
+      canvas: OffscreenCanvas | HTMLCanvasElement;
+      renderer: Renderer | null;
+      size: Size;
+      theme: Theme;
+      /** A link's fragment or a document's text; empty for a first visit. */
+      text: string;
+      files: NamedFile[];
+      /** Why this engine replaces another one; empty for the first. */
+      notice: string;
+    }
+  | { type: "open"; files: NamedFile[] }
+  | { type: "reload"; files: NamedFile[] }
+  | { type: "replay"; text: string }
+  | { type: "cmd"; text: string; echo?: boolean }
+  | { type: "input"; batch: Float32Array }
+  | { type: "size"; size: Size }
+  | { type: "theme"; theme: Theme }
+  | { type: "cancel" }
+  | { type: "ping" };
+
+export type Theme = "dark" | "light";
+
+/** What the engine sends. */
+export type FromEngine =
+  | Hello
+  | State
+  | Progress
+  | { type: "card"; card: Card }
+  | { type: "log"; command: string; text: string; ok: boolean }
+  | { type: "file"; name: string; mime: string; bytes: Uint8Array<ArrayBuffer> }
+  | { type: "fault"; message: string; kind: "trap" | "renderer" }
+  /** The first picture is on the canvas: an older canvas can go. */
+  | { type: "drawn" }
+  | { type: "pong" };
+
+/** Sent once, when the engine is ready to take commands: everything that the page's controls are made from. */
+export interface Hello {
+  type: "hello";
+  renderer: Renderer;
+  adapter: string;
+  version: string;
+  schemes: Scheme[];
+  models: { name: string; summary: string }[];
+  controls: Control[];
+  keys: Key[];
+  commands: { name: string; args: string; help: string; class: string }[];
+}
+
+export interface Scheme {
+  id: string;
+  name: string;
+  group: string;
+  summary: string;
+  command: string;
+}
+
+/** A row of choices in the panel; the chosen one is named in `State.values` under the same id. */
+export interface Control {
+  id: string;
+  tab: "view" | "surface";
+  label: string;
+  help: string;
+  kind: "choice" | "switch" | "actions";
+  choices: { value: string; label: string; command: string }[];
+}
+
+/** One key: it sends a command, or asks the page for an action that only a page can take. */
+export interface Key {
+  /** `KeyboardEvent.key`, lower case. */
+  key: string;
+  shift: boolean;
+  /** Ctrl, or Command on a Mac. */
+  mod: boolean;
+  /** Which heading it stands under in the help. */
+  group: string;
+  label: string;
+  command: string;
+  page: "" | "open" | "help" | "copy" | "panel" | "theme" | "console" | "escape";
+}
+
+export interface Counts {
+  vertices: number;
+  edges: number;
+  faces: number;
+  bytes: number;
+}
+
+export interface Level extends Counts {
+  level: number;
+  label: string;
+  allowed: boolean;
+  /** A sentence for the title: the counts, or why the level is out of reach. */
+  title: string;
+  command: string;
+}
+
+export interface Group {
+  name: string;
+  faces: number;
+  hidden: boolean;
+  command: string;
+}
+
+/** The whole view model, sent at most once a frame. */
+export interface State {
+  type: "state";
+  /** Null until a model has been read. */
+  model: {
+    name: string;
+    summary: string;
+    builtin: boolean;
+    reload: string;
+    facts: { label: string; value: string }[];
+  } | null;
+  scheme: string;
+  level: number;
+  levels: Level[];
+  /** What is on the screen. */
+  shown: Counts & { level: number; scheme: string };
+  times: { read: number; refine: number; build: number; draw: number };
+  busy: boolean;
+  values: Record<string, string>;
+  /** Controls that do not apply to this model. */
+  disabled: string[];
+  groups: Group[];
+  report: { text: string; kind: "note" | "warning" }[];
+  exports: { label: string; help: string; command: string }[];
+  undo: string | null;
+  redo: string | null;
+  text: string;
+  /** The fragment of a link to this picture, with its "#". */
+  link: string;
+  /** What the receiver of the link will miss; empty if nothing. */
+  linkNote: string;
+}
+
+/** Work that takes longer than 200 ms. */
+export interface Progress {
+  type: "progress";
+  /** "Reading cow.obj", "Refining to level 4"; empty when there is nothing to wait for. */
+  what: string;
+  /** 0 to 1, or negative where nobody can tell. */
+  done: number;
+  cancel: boolean;
+}
+
+/** A quiet message that stays until it is dismissed, or until one with the same id replaces it. */
+export interface Card {
+  id: string;
+  kind: "error" | "note";
+  title: string;
+  lines: string[];
+  /** Ask for these files again: the card shows an open button. */
+  ask: string;
+}
