@@ -27,6 +27,7 @@
 
 mod connect;
 pub mod mesh;
+pub mod pair;
 pub mod refine;
 pub mod scheme;
 pub mod shapes;

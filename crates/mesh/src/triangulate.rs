@@ -28,7 +28,7 @@ use std::collections::BinaryHeap;
 const STRAIGHT: f64 = 1e-6;
 
 /// How often the rules may be tightened again after they had to be relaxed. Bounds the work on wholly degenerate polygons.
-const RELAPSES: u32 = 64;
+const RELAPSES: u32 = 16;
 
 /// The end of a list of waiting corners.
 const END: u32 = u32::MAX;

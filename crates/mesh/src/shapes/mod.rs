@@ -37,7 +37,7 @@ pub static SHAPES: &[Shape] = &[
     Shape { name: "mouse", summary: "A computer mouse: 53 quads and a hexagon", build: mouse::mouse },
     Shape { name: "t-shape", summary: "Four cubes as a T: 18 quads", build: solids::t_shape },
     Shape { name: "torus", summary: "A ring: 128 quads, every corner regular", build: sheets::torus },
-    Shape { name: "moebius", summary: "A one-sided strip: 24 quads", build: sheets::moebius },
+    Shape { name: "moebius", summary: "A one-sided strip: 16 quads", build: sheets::moebius },
     Shape { name: "grid", summary: "An open saddle: 64 quads", build: sheets::grid },
     Shape { name: "cube", summary: "6 squares", build: solids::cube },
     Shape { name: "pyramid", summary: "A square pyramid: 6 triangles, two of them the base", build: solids::pyramid },

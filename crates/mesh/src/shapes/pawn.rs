@@ -1,4 +1,5 @@
-//! A chess pawn, turned on a lathe: a profile of 19 rings of 8 corners between two poles.
+//! A chess pawn, turned on a lathe: a profile of 19 rings of 8 corners between two poles. Every other ring is turned by half a
+//! side, so that the triangles are even and the silhouette has no seam.
 //!
 //! ```text
 //!       .-o-.        19 * 8 + 2 = 154 vertices
@@ -44,9 +45,11 @@ const PROFILE: [[f64; 2]; 19] = [
 /// The pawn: 154 vertices, 304 triangles, closed.
 pub fn pawn() -> Soup {
     let mut soup = Soup { positions: vec![[0.0, -1.0, 0.0]], ..Soup::default() };
-    for [radius, height] in PROFILE {
+    for (ring, [radius, height]) in PROFILE.into_iter().enumerate() {
+        // Every other ring is turned by half a side.
+        let turn = (ring % 2) as f64 / 2.0;
         for side in 0..SIDES {
-            let (sin, cos) = libm::sincos(TAU * f64::from(side) / f64::from(SIDES));
+            let (sin, cos) = libm::sincos(TAU * (f64::from(side) + turn) / f64::from(SIDES));
             soup.positions.push([radius * sin, height, radius * cos].map(|x| x as f32));
         }
     }
@@ -61,8 +64,13 @@ pub fn pawn() -> Soup {
         for side in 0..SIDES {
             let [a, b] = [at(ring - 1, side), at(ring - 1, side + 1)];
             let [d, c] = [at(ring, side), at(ring, side + 1)];
-            soup.push_face(&[a, b, c]);
-            soup.push_face(&[a, c, d]);
+            if ring % 2 == 1 {
+                soup.push_face(&[a, b, d]);
+                soup.push_face(&[d, b, c]);
+            } else {
+                soup.push_face(&[a, b, c]);
+                soup.push_face(&[a, c, d]);
+            }
         }
     }
     for side in 0..SIDES {

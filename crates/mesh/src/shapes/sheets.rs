@@ -50,18 +50,18 @@ pub fn grid() -> Soup {
     soup
 }
 
-/// A strip of 24 quads that closes with half a twist: one side, one boundary loop.
+/// A strip of 16 quads that closes with half a twist: one side, one boundary loop.
 ///
 /// No choice of directions fits throughout: the last quad and the first run along the edge that they share in the same
 /// direction, all others in opposite ones.
 pub fn moebius() -> Soup {
-    const QUADS: u32 = 24;
+    const QUADS: u32 = 16;
     let mut soup = Soup::default();
     for i in 0..QUADS {
         let angle = TAU * f64::from(i) / f64::from(QUADS);
         let (sin, cos) = libm::sincos(angle);
         let (up, out) = libm::sincos(angle / 2.0);
-        for half in [-0.3, 0.3] {
+        for half in [-0.25, 0.25] {
             let radius = 0.75 + half * out;
             soup.positions.push([radius * sin, half * up, radius * cos].map(|x| x as f32));
         }
