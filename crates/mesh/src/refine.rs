@@ -461,7 +461,7 @@ impl Track {
             let children = on!(&level, c => split.children(*c)) as usize;
             match &mut self.stage {
                 Stage::Points(cursor) => {
-                    self.new_points.resize(children, [0.0; 3]);
+                    zeroed(&mut self.new_points, children);
                     let old = self.points.as_deref().unwrap_or(&mesh.positions);
                     if plan.scheme.eval((&level, split, tags), old, &mut self.new_points, cursor, quota) {
                         self.stage = Stage::Wide(Cursor::default());
@@ -469,7 +469,7 @@ impl Track {
                 }
                 Stage::Wide(_) if self.wide.is_empty() => self.stage = self.after_values(plan),
                 Stage::Wide(cursor) => {
-                    self.new_wide.resize(children, [0.0; 4]);
+                    zeroed(&mut self.new_wide, children);
                     let (old, new) = (&self.wide, &mut self.new_wide);
                     let mut take = |child: u32, row: &[(Source, f64)]| {
                         let sum = weigh(row, |s| match s {
@@ -492,7 +492,7 @@ impl Track {
                 }
                 Stage::Corners(at) => {
                     on!(&level, c => {
-                        self.corners.resize(4 * c.half_edges() as usize, 0);
+                        zeroed(&mut self.corners, 4 * c.half_edges() as usize);
                         let end = at.saturating_add((*quota).min(1 << 30) as u32).min(c.faces());
                         split.corners(*c, *at, end, &mut self.corners);
                         *quota -= (end - *at) as usize;
@@ -522,6 +522,13 @@ impl Track {
             self.points = Some(std::mem::take(&mut self.new_points));
         }
         self.wide = std::mem::take(&mut self.new_wide);
+    }
+}
+
+/// Makes `buffer` of that length, if it is not yet. Asking for zeroed memory beats writing zeros: fresh pages have them.
+fn zeroed<T: Clone + bytemuck::Zeroable>(buffer: &mut Vec<T>, length: usize) {
+    if buffer.len() != length {
+        *buffer = bytemuck::zeroed_vec(length);
     }
 }
 

@@ -1,25 +1,14 @@
 //! Positions against what OpenSubdiv, CGAL and OpenMesh computed (tests/oracles: source, options and mesh in each file).
 
+mod common;
+
+use common::distance;
 use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme};
 use serde_json::Value;
 use std::sync::Arc;
 
 fn triples(v: &Value) -> Vec<[f64; 3]> {
     v.as_array().unwrap().iter().map(|p| std::array::from_fn(|k| p[k].as_f64().unwrap())).collect()
-}
-
-/// The largest distance from a point of `ours` to the nearest of `theirs`, each taken once.
-fn distance(ours: &[[f64; 3]], theirs: &[[f64; 3]]) -> f64 {
-    assert_eq!(ours.len(), theirs.len());
-    let mut free = vec![true; theirs.len()];
-    let mut worst: f64 = 0.0;
-    for p in ours {
-        let d = |q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>();
-        let (i, q) = theirs.iter().enumerate().filter(|(i, _)| free[*i]).min_by(|a, b| d(a.1).total_cmp(&d(b.1))).unwrap();
-        free[i] = false;
-        worst = worst.max(d(q).sqrt());
-    }
-    worst
 }
 
 fn check(json: &str) {

@@ -1,0 +1,164 @@
+//! From polygons to a mesh: whatever a soup holds, the result passes the validator and the report says what was done.
+
+mod common;
+
+use common::{book, bow_tie, rubble};
+use limn_mesh::topology::validate;
+use limn_mesh::{Connectivity, Mesh, NONE, Note, SCHEMES, Soup, TopologyError, Weld};
+use proptest::prelude::*;
+
+fn notes(soup: &Soup) -> Vec<String> {
+    Mesh::build(soup, Weld::Off).unwrap().1.notes.iter().map(ToString::to_string).collect()
+}
+
+fn square() -> Vec<[f32; 3]> {
+    vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 1.0]]
+}
+
+#[test]
+fn nothing_to_say_about_a_clean_mesh() {
+    assert_eq!(notes(&Soup::from_faces(square(), &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])), [""; 0]);
+}
+
+#[test]
+fn degenerate_faces_are_dropped_or_cleaned() {
+    let soup = Soup::from_faces(
+        square(),
+        &[vec![0, 1, 2, 3], vec![0, 0, 1], vec![4, 4, 4, 4], vec![0, 1, 1, 4, 4], vec![1, 2]],
+    );
+    assert_eq!(
+        notes(&soup),
+        [
+            "3 faces with fewer than three different corners (first: 1) left out",
+            "1 face with repeated corners (first: 3) cleaned",
+            "1 face (first: 3) turned over to agree with the neighbours",
+        ]
+    );
+    let (mesh, _) = Mesh::build(&soup, Weld::Off).unwrap();
+    assert_eq!(mesh.face_source, [0, 3]);
+    // A spike is taken out: 0 1 2 1 4 is the triangle 0 1 4.
+    let (mesh, _) = Mesh::build(&Soup::from_faces(square(), &[[0, 1, 2, 1, 4]]), Weld::Off).unwrap();
+    assert_eq!(mesh.topology.counts().corners, 3);
+    assert_eq!(mesh.vertex_source, [0, 1, 4]);
+}
+
+#[test]
+fn isolated_vertices_are_left_out_and_order_is_kept() {
+    let mut positions = square();
+    positions.insert(2, [9.0, 9.0, 9.0]);
+    let soup = Soup::from_faces(positions, &[[0, 1, 3], [0, 3, 4]]);
+    let (mesh, _) = Mesh::build(&soup, Weld::Off).unwrap();
+    assert_eq!(mesh.vertex_source, [0, 1, 3, 4]);
+    assert_eq!(notes(&soup), ["2 vertex positions used by no face (first: 2) left out"]);
+}
+
+#[test]
+fn neighbours_are_turned_to_agree_with_the_majority() {
+    let soup = Soup::from_faces(square(), &[[0, 1, 4], [1, 2, 4], [2, 4, 3], [3, 0, 4]]);
+    let (mesh, report) = Mesh::build(&soup, Weld::Off).unwrap();
+    assert_eq!(report.notes, [Note::Turned { count: 1, first: 2 }]);
+    let face = |f| mesh.topology.face_half_edges(f).map(|h| mesh.topology.origin(h)).collect::<Vec<_>>();
+    assert_eq!((face(0), face(2)), (vec![0, 1, 4], vec![2, 3, 4]));
+    assert_eq!(mesh.counts().boundary, 4);
+}
+
+#[test]
+fn three_faces_on_an_edge_are_cut_apart() {
+    let (mesh, report) = Mesh::build(&book(2), Weld::Off).unwrap();
+    assert_eq!(report.notes[0], Note::NonManifoldEdges { count: 2, first: [0, 4] });
+    assert_eq!(report.notes.len(), 1);
+    let stats = mesh.stats();
+    assert_eq!((stats.components, stats.boundary_loops), (3, 3));
+    // The inside of the cut curve stays a smooth curve; its ends become corners.
+    let sharp: Vec<u32> = (0..mesh.positions.len()).filter(|&v| mesh.sharp[v]).map(|v| mesh.vertex_source[v]).collect();
+    assert_eq!(sharp, [0, 8, 0, 0, 8, 8]);
+}
+
+#[test]
+fn fans_that_meet_in_a_point_are_split_and_sharp() {
+    let (mesh, report) = Mesh::build(&bow_tie(), Weld::Off).unwrap();
+    assert_eq!(report.notes, [Note::NonManifoldVertices { count: 1, first: 0 }]);
+    assert_eq!(mesh.vertex_source, [0, 1, 2, 3, 4, 0]);
+    assert_eq!(mesh.sharp, [true, false, false, false, false, true]);
+}
+
+#[test]
+fn one_side_only() {
+    let (mesh, report) = Mesh::build(&(limn_mesh::shape("moebius").unwrap().build)(), Weld::Off).unwrap();
+    assert!(mesh.one_sided);
+    assert_eq!(mesh.stats().genus, None);
+    assert!(
+        report.notes.iter().any(|n| n.to_string().starts_with("the surface has one side only; cut along")),
+        "{report:?}"
+    );
+}
+
+#[test]
+fn stats_know_the_shape() {
+    let of = |name: &str| Mesh::build(&(limn_mesh::shape(name).unwrap().build)(), Weld::Off).unwrap().0.stats();
+    let (torus, cube, grid) = (of("torus"), of("cube"), of("grid"));
+    assert_eq!((torus.genus, torus.components, torus.boundary_loops), (Some(1), 1, 0));
+    assert_eq!((cube.genus, cube.components, cube.boundary_loops), (Some(0), 1, 0));
+    assert_eq!((grid.genus, grid.components, grid.boundary_loops), (Some(0), 1, 1));
+}
+
+#[test]
+fn seams_are_found_by_value() {
+    // Two triangles, one edge; texture indices differ, values agree at one end only.
+    let mut soup = Soup::from_faces(square(), &[[0, 1, 2], [0, 2, 3]]);
+    soup.uvs = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    soup.uv_corners = vec![0, 1, 2, 3, 4, 5];
+    let seams = |soup: &Soup| Mesh::build(soup, Weld::Off).unwrap().0.uv.unwrap().topology.counts().boundary;
+    assert_eq!(seams(&soup), 4);
+    soup.uvs[4] = [0.9, 1.0];
+    assert_eq!(seams(&soup), 6);
+    soup.uvs[4] = [1.0, 1.0];
+    soup.uv_corners[3] = NONE;
+    assert_eq!(seams(&soup), 6);
+}
+
+#[test]
+fn refused_in_one_sentence() {
+    let error = |soup: &Soup| Mesh::build(soup, Weld::Exact).unwrap_err().to_string();
+    assert_eq!(error(&Soup::default()), "the model has no faces; drop a model with polygons");
+    assert_eq!(
+        error(&Soup::from_faces(square(), &[[0, 0, 1]])),
+        "the model has no faces (all 1 have fewer than three different corners); drop a model with polygons"
+    );
+    assert_eq!(
+        error(&Soup::from_faces(square(), &[[0, 1, 2], [0, 7, 1]])),
+        "face 1 uses vertex 7, but there are only 5 vertices (numbered from 0)"
+    );
+    let mut soup = Soup::from_faces(square(), &[[0, 1, 2]]);
+    soup.positions[4][1] = f32::NAN;
+    assert_eq!(error(&soup), "vertex 4 has a coordinate that is not a finite number");
+    let mut soup = Soup::from_faces(square(), &[[0, 1, 2]]);
+    soup.offsets = vec![0, 2];
+    assert!(matches!(Mesh::build(&soup, Weld::Off), Err(TopologyError::Inconsistent { .. })));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Any faces over a few vertices: no panic, a valid mesh, and every scheme refines it to valid corners.
+    #[test]
+    fn rubble_becomes_a_mesh(soup in rubble()) {
+        match Mesh::build(&soup, Weld::Off) {
+            Err(e) => prop_assert!(matches!(e, TopologyError::NoFaces { .. }), "{e}"),
+            Ok((mesh, _)) => {
+                prop_assert_eq!(validate(&mesh.topology), Ok(()));
+                mesh.stats();
+                let mesh = std::sync::Arc::new(mesh);
+                for scheme in SCHEMES.iter().filter(|s| s.info.split(mesh.is_triangles()).is_some()) {
+                    let plan = limn_mesh::Plan { scheme, boundary: limn_mesh::Boundary::EdgeAndCorner, level: 2 };
+                    let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
+                    let same = |a: usize, b: usize| refined.points[a].map(f32::to_bits) == refined.points[b].map(f32::to_bits);
+                    for v in 0..mesh.positions.len() {
+                        let first = mesh.vertex_source.iter().position(|&s| s == mesh.vertex_source[v]).unwrap();
+                        prop_assert!(same(v, first), "{}: copies {} and {} part", scheme.info.id, first, v);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! Schemes against the plainest program that can be written from their papers: polygons, maps, f64, no half-edges.
+
+mod common;
+
+use common::{build, distance, gallery};
+use limn_mesh::refine::evaluate;
+use limn_mesh::{Boundary, Plan, scheme};
+use std::collections::{BTreeMap, BTreeSet};
+
+type Point = [f64; 3];
+
+#[derive(Clone)]
+struct Polygons {
+    points: Vec<Point>,
+    faces: Vec<Vec<usize>>,
+}
+
+fn mean<'a>(points: impl IntoIterator<Item = &'a Point>) -> Point {
+    let (mut sum, mut n) = ([0.0; 3], 0.0);
+    for p in points {
+        sum = [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]];
+        n += 1.0;
+    }
+    sum.map(|x| x / n)
+}
+
+fn mix(terms: &[(f64, Point)]) -> Point {
+    std::array::from_fn(|k| terms.iter().map(|(w, p)| w * p[k]).sum())
+}
+
+/// Edges with their faces, and what they say about vertices.
+struct Around {
+    edges: BTreeMap<(usize, usize), Vec<usize>>,
+    neighbours: Vec<BTreeSet<usize>>,
+    faces: Vec<Vec<usize>>,
+    rim: Vec<Vec<usize>>,
+}
+
+impl Polygons {
+    fn around(&self) -> Around {
+        let n = self.points.len();
+        let mut a = Around {
+            edges: BTreeMap::new(),
+            neighbours: vec![BTreeSet::new(); n],
+            faces: vec![Vec::new(); n],
+            rim: vec![Vec::new(); n],
+        };
+        for (f, face) in self.faces.iter().enumerate() {
+            for (i, &v) in face.iter().enumerate() {
+                let w = face[(i + 1) % face.len()];
+                a.edges.entry((v.min(w), v.max(w))).or_default().push(f);
+                a.neighbours[v].insert(w);
+                a.neighbours[w].insert(v);
+                a.faces[v].push(f);
+            }
+        }
+        for (&(v, w), faces) in &a.edges {
+            assert!(faces.len() <= 2);
+            if faces.len() == 1 {
+                a.rim[v].push(w);
+                a.rim[w].push(v);
+            }
+        }
+        a
+    }
+
+    /// Old vertices, then one point a face (quads) and one an edge.
+    fn split(&self, a: &Around, triangles: bool) -> Polygons {
+        let mut points = self.points.clone();
+        if !triangles {
+            points.extend(self.faces.iter().map(|f| mean(f.iter().map(|&v| &self.points[v]))));
+        }
+        let first_edge = points.len();
+        let edge: BTreeMap<_, _> = a.edges.keys().enumerate().map(|(i, &k)| (k, first_edge + i)).collect();
+        points.extend(a.edges.keys().map(|&(v, w)| mean([&self.points[v], &self.points[w]])));
+        let mut faces = Vec::new();
+        for (f, face) in self.faces.iter().enumerate() {
+            let n = face.len();
+            let e = |i: usize| {
+                let (v, w) = (face[i % n], face[(i + 1) % n]);
+                edge[&(v.min(w), v.max(w))]
+            };
+            for i in 0..n {
+                if triangles {
+                    faces.push(vec![face[i], e(i), e(i + n - 1)]);
+                } else {
+                    faces.push(vec![face[i], e(i), self.points.len() + f, e(i + n - 1)]);
+                }
+            }
+            if triangles {
+                faces.push((0..n).map(e).collect());
+            }
+        }
+        Polygons { points, faces }
+    }
+
+    fn rim_rule(&self, a: &Around, v: usize, boundary: Boundary) -> Option<Point> {
+        if a.rim[v].is_empty() {
+            return None;
+        }
+        if boundary == Boundary::EdgeAndCorner && a.faces[v].len() == 1 {
+            return Some(self.points[v]);
+        }
+        Some(mix(&[(0.75, self.points[v]), (0.125, self.points[a.rim[v][0]]), (0.125, self.points[a.rim[v][1]])]))
+    }
+
+    /// Catmull and Clark 1978: (Q + 2R + (n - 3) S) / n.
+    fn catmull_clark(&self, boundary: Boundary) -> Polygons {
+        let a = self.around();
+        let mut out = self.split(&a, false);
+        let f0 = self.points.len();
+        for (i, (&(v, w), faces)) in a.edges.iter().enumerate() {
+            if let [f, g] = faces[..] {
+                let four = [self.points[v], self.points[w], out.points[f0 + f], out.points[f0 + g]];
+                out.points[f0 + self.faces.len() + i] = mean(&four);
+            }
+        }
+        for v in 0..f0 {
+            out.points[v] = self.rim_rule(&a, v, boundary).unwrap_or_else(|| {
+                let n = a.neighbours[v].len() as f64;
+                let q = mean(a.faces[v].iter().map(|&f| &out.points[f0 + f]));
+                let mids: Vec<Point> =
+                    a.neighbours[v].iter().map(|&w| mean([&self.points[v], &self.points[w]])).collect();
+                mix(&[(1.0 / n, q), (2.0 / n, mean(&mids)), ((n - 3.0) / n, self.points[v])])
+            });
+        }
+        out
+    }
+
+    /// Loop 1987.
+    fn loop_(&self, boundary: Boundary) -> Polygons {
+        let a = self.around();
+        let mut out = self.split(&a, true);
+        for (i, (&(v, w), faces)) in a.edges.iter().enumerate() {
+            if faces.len() == 2 {
+                let other = |f: usize| *self.faces[f].iter().find(|&&x| x != v && x != w).unwrap();
+                out.points[self.points.len() + i] = mix(&[
+                    (0.375, self.points[v]),
+                    (0.375, self.points[w]),
+                    (0.125, self.points[other(faces[0])]),
+                    (0.125, self.points[other(faces[1])]),
+                ]);
+            }
+        }
+        for v in 0..self.points.len() {
+            out.points[v] = self.rim_rule(&a, v, boundary).unwrap_or_else(|| {
+                let n = a.neighbours[v].len() as f64;
+                let c = 3.0 / 8.0 + (std::f64::consts::TAU / n).cos() / 4.0;
+                let alpha = 3.0 / 8.0 + c * c; // the vertex's own weight
+                let ring = mean(a.neighbours[v].iter().map(|&w| &self.points[w]));
+                mix(&[(alpha, self.points[v]), (1.0 - alpha, ring)])
+            });
+        }
+        out
+    }
+
+    /// A linear split, then every vertex goes toward the mean of its faces' weighted centroids (the vertex itself counts
+    /// `own`, the face's other corners share the rest), by a factor of its valence (Schaefer and Warren 2003, whom the
+    /// factored program follows).
+    fn factored(&self, triangles: bool, own: f64, factor: impl Fn(f64) -> f64) -> Polygons {
+        let mut out = self.split(&self.around(), triangles);
+        let a = out.around();
+        let before = out.points.clone();
+        for v in 0..before.len() {
+            let mut centroids = Vec::new();
+            for &f in &a.faces[v] {
+                let face = &out.faces[f];
+                let rest = (1.0 - own) / (face.len() - 1) as f64;
+                centroids
+                    .push(mix(&face.iter().map(|&w| (if w == v { own } else { rest }, before[w])).collect::<Vec<_>>()));
+            }
+            let w = factor(a.faces[v].len() as f64);
+            out.points[v] = mix(&[(1.0 - w, before[v]), (w, mean(&centroids))]);
+        }
+        out
+    }
+}
+
+fn polygons(soup: &limn_mesh::Soup) -> Polygons {
+    Polygons {
+        points: soup.positions.iter().map(|p| p.map(f64::from)).collect(),
+        faces: (0..soup.face_count()).map(|f| soup.face(f).iter().map(|&v| v as usize).collect()).collect(),
+    }
+}
+
+fn compare(
+    what: &str,
+    mesh: &limn_mesh::Mesh,
+    id: &str,
+    boundary: Boundary,
+    mut naive: Polygons,
+    step: impl Fn(&Polygons) -> Polygons,
+) {
+    let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+    for level in 1..=2 {
+        naive = step(&naive);
+        let plan = Plan { scheme: scheme(id).unwrap(), boundary, level };
+        let ours = evaluate(mesh, plan, &positions, |_| ()).unwrap();
+        let d = distance(&ours, &naive.points);
+        assert!(d < 1e-12, "{what}, {id}, level {level}, {boundary:?}: off by {d}");
+    }
+}
+
+#[test]
+fn schemes_equal_their_papers() {
+    let mut compared = 0;
+    for (name, soup) in gallery() {
+        let mesh = build(&soup);
+        if mesh.positions.len() != soup.positions.len() || soup.face_count() > 400 {
+            continue; // split vertices: tests/conformance.rs
+        }
+        for boundary in [Boundary::EdgeOnly, Boundary::EdgeAndCorner] {
+            compare(&name, &mesh, "catmull-clark", boundary, polygons(&soup), |p| p.catmull_clark(boundary));
+            compared += 1;
+            if mesh.is_triangles() {
+                compare(&name, &mesh, "loop", boundary, polygons(&soup), |p| p.loop_(boundary));
+            }
+        }
+        let triangles = mesh.is_triangles();
+        compare(&name, &mesh, "linear", Boundary::EdgeOnly, polygons(&soup), |p| p.split(&p.around(), triangles));
+    }
+    assert!(compared > 60);
+}
+
+/// Linear split and weighted centroids: Loop with weights 1/4, 3/8, 3/8 and factor 5/3 - 8/3 (3/8 + cos(2 pi / n) / 4)^2,
+/// Catmull-Clark with plain centroids and factor 4/n.
+#[test]
+fn factored_rules_give_the_same_points_on_closed_meshes() {
+    for name in ["pyramid", "tetrahedron", "octahedron", "icosahedron", "pawn"] {
+        let soup = (limn_mesh::shape(name).unwrap().build)();
+        compare(name, &build(&soup), "loop", Boundary::EdgeOnly, polygons(&soup), |p| {
+            p.factored(true, 0.25, |n| {
+                let c = 3.0 / 8.0 + (std::f64::consts::TAU / n).cos() / 4.0;
+                5.0 / 3.0 - 8.0 / 3.0 * c * c
+            })
+        });
+    }
+    for name in ["cube", "t-shape", "torus"] {
+        let soup = (limn_mesh::shape(name).unwrap().build)();
+        compare(name, &build(&soup), "catmull-clark", Boundary::EdgeOnly, polygons(&soup), |p| {
+            p.factored(false, 0.25, |n| 4.0 / n)
+        });
+    }
+}
+
+/// J. Baumgartner, "Subdivision surfaces" (2003), table 3.8: polygon counts of the pyramid, the cube and the T.
+#[test]
+fn baumgartners_table() {
+    let counts = |name: &str, id: &str, triangulate: bool| -> Vec<usize> {
+        let mut soup = (limn_mesh::shape(name).unwrap().build)();
+        if triangulate {
+            soup = limn_mesh::triangulate_soup(&soup).0;
+        }
+        let mesh = build(&soup);
+        let plan = |level| Plan { scheme: scheme(id).unwrap(), boundary: Boundary::default(), level };
+        (0..=4).map(|level| limn_mesh::refine(&mesh, plan(level), u64::MAX).unwrap().faces.count()).collect()
+    };
+    for id in ["loop", "linear"] {
+        assert_eq!(counts("pyramid", id, false), [6, 24, 96, 384, 1536]);
+        assert_eq!(counts("cube", id, true), [12, 48, 192, 768, 3072]);
+    }
+    for id in ["catmull-clark", "linear"] {
+        assert_eq!(counts("cube", id, false), [6, 24, 96, 384, 1536]);
+        assert_eq!(counts("t-shape", id, false), [18, 72, 288, 1152, 4608]);
+    }
+    // His third program splits triangles into three quads: the quad split's counts.
+    assert_eq!(counts("pyramid", "catmull-clark", false), [6, 18, 72, 288, 1152]);
+    assert_eq!(counts("cube", "catmull-clark", true), [12, 36, 144, 576, 2304]);
+}
