@@ -13,6 +13,7 @@
 mod error;
 mod export;
 mod files;
+mod gltf;
 mod model;
 mod mtl;
 mod obj;
@@ -30,5 +31,34 @@ pub use write_obj::write_obj;
 /// # Errors
 /// One [`ReadError`] when there is no surface to show; trouble that leaves one is in the list of warnings.
 pub fn read(name: &str, bytes: &[u8], files: &dyn Files, limits: &Limits) -> Result<(Model, Vec<Warning>), ReadError> {
-    obj::read(name, bytes, files, limits)
+    match format(name, bytes)? {
+        Format::Gltf => gltf::read(name, bytes, files, limits),
+        Format::Obj => obj::read(name, bytes, files, limits),
+    }
+}
+
+enum Format {
+    Obj,
+    Gltf,
+}
+
+/// Finds a file's format: content first, since names lie, then the extension.
+fn format(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
+    if bytes.is_empty() {
+        return Err(ReadError::Empty { file: name.to_owned() });
+    }
+    if gltf::is_gltf(bytes) {
+        return Ok(Format::Gltf);
+    }
+    let extension = name.rsplit_once('.').map(|(_, e)| e.to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("obj") => Ok(Format::Obj),
+        Some("glb" | "gltf" | "vrm") => {
+            let problem = "it does not begin with \"glTF\" or \"{\"".to_owned();
+            Err(ReadError::Container { file: name.to_owned(), problem })
+        }
+        // A name without a known extension may still be OBJ: some line begins like a vertex.
+        _ if obj::looks_like_obj(bytes) => Ok(Format::Obj),
+        _ => Err(ReadError::UnknownFormat { file: name.to_owned() }),
+    }
 }

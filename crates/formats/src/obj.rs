@@ -44,6 +44,16 @@ pub(crate) fn read(
     reader.finish(file, files)
 }
 
+/// Whether the first 64 KB have a line with a vertex and no byte that text does not have.
+pub(crate) fn looks_like_obj(bytes: &[u8]) -> bool {
+    let head = bytes.get(..bytes.len().min(1 << 16)).unwrap_or_default();
+    let vertex = |line: &[u8]| {
+        let mut cur = Cursor::new(line);
+        cur.word() == b"v" && cur.float().is_ok() && cur.float().is_ok() && cur.float().is_ok()
+    };
+    !head.contains(&0) && head.split(|b| matches!(b, b'\n' | b'\r')).any(vertex)
+}
+
 /// Refuses what cannot be text.
 fn check_text(file: &str, bytes: &[u8]) -> Result<(), ReadError> {
     let not_text = |byte: usize, what| ReadError::NotText { file: file.to_owned(), byte: byte as u64, what };

@@ -122,10 +122,12 @@ impl<'a> Cursor<'a> {
     pub fn word(&mut self) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
-        while !matches!(self.peek(), b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r')
-            && !(self.peek() == b'\\' && matches!(self.peek_at(1), b'\n' | b'\r'))
-        {
-            self.at += 1;
+        loop {
+            match self.peek() {
+                b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => break,
+                b'\\' if matches!(self.peek_at(1), b'\n' | b'\r') => break,
+                _ => self.at += 1,
+            }
         }
         self.data.get(start..self.at).unwrap_or_default()
     }

@@ -1,0 +1,160 @@
+//! From bytes to a parsed document and its buffers.
+//!
+//! ```text
+//!   .glb   "glTF" version length | length "JSON" {...} | length "BIN\0" bytes     (little-endian u32s)
+//!   .gltf  {...}, buffers beside it or in data: URIs
+//! ```
+//!
+//! Every length is checked against the bytes that are really there before anything is cut out. Buffers are looked up when
+//! first used, so a file with a missing buffer that no surface needs still opens.
+
+use std::{borrow::Cow, cell::OnceCell, cell::RefCell};
+
+use serde_json::Value;
+
+use super::json::{bad, index, list, text, whole};
+use crate::{
+    Files, Limits, ReadError,
+    error::Budget,
+    files::{data_uri, find},
+};
+
+/// A parsed file with access to its buffers.
+pub(super) struct Source<'a> {
+    pub file: &'a str,
+    pub root: Value,
+    pub files: &'a dyn Files,
+    pub budget: RefCell<Budget>,
+    binary: Option<&'a [u8]>,
+    buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
+}
+
+impl<'a> Source<'a> {
+    pub fn open(file: &'a str, bytes: &'a [u8], files: &'a dyn Files, limits: &Limits) -> Result<Self, ReadError> {
+        let (json, binary) = if bytes.starts_with(b"glTF") { split_glb(file, bytes)? } else { (bytes, None) };
+        let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+        let mut budget = Budget::new(limits);
+        // A parsed value takes 32 bytes, keys and map nodes more, and every value but the first follows one of these.
+        let values = json.iter().filter(|b| matches!(b, b',' | b'[' | b'{')).count() as u64;
+        budget.spend("The file's JSON", values, 64)?;
+        budget.spend("The file's JSON", json.len() as u64, 1)?;
+        let root: Value = serde_json::from_slice(json).map_err(|e| {
+            let text = e.to_string();
+            ReadError::Json {
+                file: file.to_owned(),
+                line: e.line() as u64,
+                column: e.column() as u64,
+                problem: text.split(" at line ").next().unwrap_or_default().to_owned(),
+            }
+        })?;
+        let buffers = list(&root, "buffers").iter().map(|_| OnceCell::new()).collect();
+        Ok(Source { file, root, files, budget: RefCell::new(budget), binary, buffers })
+    }
+
+    /// The bytes of a buffer, at most as many as it states.
+    pub fn buffer(&self, number: usize) -> Result<&[u8], ReadError> {
+        let place = format_args!("buffers[{number}]");
+        let (Some(cell), Some(buffer)) = (self.buffers.get(number), list(&self.root, "buffers").get(number)) else {
+            return Err(bad(place, "there is no such buffer"));
+        };
+        if cell.get().is_none() {
+            let bytes = self.load_buffer(buffer, number)?;
+            let stated = whole(buffer, "byteLength", place)?.ok_or_else(|| bad(place, "it has no byteLength"))?;
+            if stated > bytes.len() as u64 {
+                let have = bytes.len();
+                return Err(bad(
+                    place,
+                    format!("it should have {stated} bytes, but only {have} are there; the file is cut short"),
+                ));
+            }
+            let _ = cell.set(bytes);
+        }
+        Ok(cell.get().map_or(&[], |bytes| bytes))
+    }
+
+    fn load_buffer(&self, buffer: &Value, number: usize) -> Result<Cow<'a, [u8]>, ReadError> {
+        let place = format_args!("buffers[{number}]");
+        let Some(uri) = text(buffer, "uri") else {
+            return match self.binary {
+                Some(bytes) if number == 0 => Ok(Cow::Borrowed(bytes)),
+                _ => Err(bad(place, "it has neither a uri nor a binary part in the file")),
+            };
+        };
+        if uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:")) {
+            self.budget.borrow_mut().spend("An embedded buffer", uri.len() as u64, 1)?;
+            return match data_uri(uri) {
+                Some((_, bytes)) => Ok(Cow::Owned(bytes)),
+                None => Err(bad(place, "its data: URI does not decode")),
+            };
+        }
+        match find(self.files, uri) {
+            Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
+            None => Err(ReadError::MissingFile { missing: uri.to_owned(), needed_by: self.file.to_owned() }),
+        }
+    }
+
+    /// The bytes of a buffer view and its stride, if it states one.
+    pub fn view(&self, number: usize) -> Result<(&[u8], Option<usize>), ReadError> {
+        let place = format_args!("bufferViews[{number}]");
+        let Some(view) = list(&self.root, "bufferViews").get(number) else {
+            return Err(bad(place, "there is no such buffer view"));
+        };
+        let buffer =
+            index(view, "buffer", self.buffers.len(), place)?.ok_or_else(|| bad(place, "it names no buffer"))?;
+        let from = whole(view, "byteOffset", place)?.unwrap_or(0);
+        let length = whole(view, "byteLength", place)?.ok_or_else(|| bad(place, "it has no byteLength"))?;
+        let stride = whole(view, "byteStride", place)?.map(|s| usize::try_from(s).unwrap_or(usize::MAX));
+        let bytes = self.buffer(buffer)?;
+        let cut =
+            from.checked_add(length).and_then(|end| bytes.get(usize::try_from(from).ok()?..usize::try_from(end).ok()?));
+        match cut {
+            Some(cut) => Ok((cut, stride)),
+            None => {
+                let have = bytes.len();
+                let problem =
+                    format!("its {length} bytes from byte {from} lie outside buffer {buffer}, which has {have}");
+                Err(bad(place, problem))
+            }
+        }
+    }
+}
+
+/// The JSON and the binary part of a GLB file.
+fn split_glb<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), ReadError> {
+    let damaged = |problem: String| ReadError::Container { file: file.to_owned(), problem };
+    let word =
+        |at: usize| -> Option<u32> { bytes.get(at..at.checked_add(4)?)?.try_into().ok().map(u32::from_le_bytes) };
+    let cut_short = |at: usize| damaged(format!("it ends at byte {} inside the header at byte {at}", bytes.len()));
+    let version = word(4).ok_or_else(|| cut_short(0))?;
+    if version != 2 {
+        return Err(ReadError::Version { file: file.to_owned(), version: version.to_string() });
+    }
+    let length = word(8).ok_or_else(|| cut_short(0))? as usize;
+    if length > bytes.len() {
+        return Err(damaged(format!("its header claims {length} bytes, but the file has only {}", bytes.len())));
+    }
+    let mut at = 12;
+    let (mut json, mut binary) = (None, None);
+    while at < length {
+        let size = word(at).ok_or_else(|| cut_short(at))? as usize;
+        let kind = word(at + 4).ok_or_else(|| cut_short(at))?;
+        let end = (at + 8).checked_add(size).filter(|end| *end <= length);
+        let Some(chunk) = end.and_then(|end| bytes.get(at + 8..end)) else {
+            return Err(damaged(format!(
+                "the chunk at byte {at} claims {size} bytes, but only {} are left",
+                length.saturating_sub(at + 8)
+            )));
+        };
+        match kind {
+            0x4e4f534a if json.is_none() => json = Some(chunk),
+            0x004e4942 if binary.is_none() => binary = Some(chunk),
+            _ => (),
+        }
+        // Chunks are padded to 4 bytes, and their size counts it; some writers forget.
+        at = (at + 8 + size).next_multiple_of(4);
+    }
+    match json {
+        Some(json) => Ok((json, binary)),
+        None => Err(damaged("it has no JSON part".to_owned())),
+    }
+}
