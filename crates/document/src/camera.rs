@@ -19,6 +19,9 @@
 use glam::camera::rh::{proj::directx, view::look_to_mat4};
 use glam::{Mat4, Vec2, Vec3};
 
+pub use crate::bounds::Bounds;
+pub use crate::pinch::{Pinch, wheel_factor};
+
 /// How much of the viewport a framed model leaves free on each side, as a fraction.
 const MARGIN: f32 = 0.1;
 /// The field of view of a new camera across the shorter side of the viewport, in degrees.
@@ -113,72 +116,6 @@ impl Standard {
             // atan(1 / sqrt 2): the angle of a cube's diagonal to its base.
             Standard::Iso => (45.0, 35.264_39),
         }
-    }
-}
-
-/// An axis-aligned box. Always finite, with `min <= max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The lowest coordinates.
-    pub min: Vec3,
-    /// The highest coordinates.
-    pub max: Vec3,
-}
-
-impl Default for Bounds {
-    /// The box from -1 to 1, which an empty document shows.
-    fn default() -> Self {
-        Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }
-    }
-}
-
-impl Bounds {
-    /// The box of the points, one pass. Points with a coordinate that is not finite are left out; `None` if none is left.
-    pub fn of<'a>(points: impl IntoIterator<Item = &'a [f32; 3]>) -> Option<Bounds> {
-        let mut found: Option<Bounds> = None;
-        for point in points {
-            let p = Vec3::from(*point);
-            if p.is_finite() {
-                found = Some(match found {
-                    None => Bounds { min: p, max: p },
-                    Some(b) => Bounds { min: b.min.min(p), max: b.max.max(p) },
-                });
-            }
-        }
-        found
-    }
-
-    /// The middle.
-    pub fn center(&self) -> Vec3 {
-        // Halved before the sum, so that coordinates near f32::MAX do not overflow.
-        self.min * 0.5 + self.max * 0.5
-    }
-
-    /// The length of the space diagonal, 0 for a single point.
-    pub fn diagonal(&self) -> f32 {
-        // In f64, where the squares of any f32 fit.
-        ((self.max.as_dvec3() - self.min.as_dvec3()).length() as f32).min(f32::MAX)
-    }
-
-    /// The eight corners.
-    pub fn corners(&self) -> [Vec3; 8] {
-        let (a, b) = (self.min, self.max);
-        [
-            a,
-            Vec3::new(b.x, a.y, a.z),
-            Vec3::new(a.x, b.y, a.z),
-            Vec3::new(b.x, b.y, a.z),
-            Vec3::new(a.x, a.y, b.z),
-            Vec3::new(b.x, a.y, b.z),
-            Vec3::new(a.x, b.y, b.z),
-            b,
-        ]
-    }
-
-    /// The diagonal, or 1 where the box is a point: a length that one can divide by.
-    fn size(&self) -> f32 {
-        let d = self.diagonal();
-        if d > 0.0 && d.is_finite() { d } else { 1.0 }
     }
 }
 
@@ -535,40 +472,4 @@ fn decimal(value: f32, places: i32) -> String {
 pub fn wrap_degrees(angle: f32) -> f32 {
     let wrapped = angle.rem_euclid(360.0);
     if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
-}
-
-/// What a two-finger gesture did between two moments.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pinch {
-    /// The midpoint between the fingers now, in -1..1 with y up.
-    pub center: Vec2,
-    /// How far the midpoint moved, in the same units.
-    pub pan: Vec2,
-    /// How many times farther apart the fingers are: more than 1 comes closer.
-    pub scale: f32,
-    /// How far the fingers turned on the screen, in degrees, counter-clockwise positive.
-    pub twist: f32,
-}
-
-impl Pinch {
-    /// The gesture from fingers at `before` to the same two at `now`; all in -1..1 with y up, in a viewport of `aspect`.
-    /// Fingers closer than a hundredth of the shorter side neither scale nor turn.
-    pub fn between(before: [Vec2; 2], now: [Vec2; 2], aspect: f32) -> Pinch {
-        let middle = |f: [Vec2; 2]| (f[0] + f[1]) * 0.5;
-        let stretch = if aspect >= 1.0 { Vec2::new(aspect, 1.0) } else { Vec2::new(1.0, 1.0 / aspect) };
-        let (a, b) = ((before[1] - before[0]) * stretch, (now[1] - now[0]) * stretch);
-        let steady = a.length() > 0.02 && b.length() > 0.02;
-        Pinch {
-            center: middle(now),
-            pan: middle(now) - middle(before),
-            scale: if steady { b.length() / a.length() } else { 1.0 },
-            twist: if steady { a.angle_to(b).to_degrees() } else { 0.0 },
-        }
-    }
-}
-
-/// The factor for [`Camera::dolly`] from a wheel's movement in pixels (down is positive and goes away): a notch of 100 is
-/// a fifth. One event is worth three notches at most, whatever a device claims.
-pub fn wheel_factor(pixels: f32) -> f32 {
-    if pixels.is_finite() { (pixels.clamp(-300.0, 300.0) * 0.0018).exp() } else { 1.0 }
 }

@@ -18,17 +18,16 @@
 use std::sync::Arc;
 
 use limn_formats::{Model, Warning};
-use limn_mesh::{
-    Accepts, Boundary, Entry, Job, Mesh, Plan, Prediction, RefineError, SCHEMES, SHAPES, Soup, Weld, predict, scheme,
-    shape,
-};
+use limn_mesh::{Accepts, Mesh, Plan, Prediction, RefineError, Soup, Weld, predict, shape};
 
-use crate::build::{Base, BuildError, Built, Edit, Remark};
-use crate::camera::Bounds;
-use crate::command::{self, Class, Command, ParseError, VERSION};
+use crate::build::{Edit, Remark};
+use crate::camera::{Bounds, Standard};
+use crate::command::{self, Class, Command, VERSION};
+use crate::error::CommandError;
 use crate::history::History;
 use crate::link::{self, LinkError};
 use crate::source::Source;
+use crate::state::{State, check, find_scheme};
 use crate::view::{View, ViewSet};
 
 /// How many of the models opened before the present one undo can bring back.
@@ -60,193 +59,6 @@ pub enum Outcome {
     },
     /// Show this text.
     Help(String),
-}
-
-/// Why a command did nothing.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CommandError {
-    /// The text is no command.
-    #[error(transparent)]
-    Parse(#[from] ParseError),
-    /// The text is no link.
-    #[error(transparent)]
-    Link(#[from] LinkError),
-    /// No model is open.
-    #[error("`{0}` needs a model; open one first, as in `open builtin:cube`")]
-    NoModel(&'static str),
-    /// There is no such built-in model.
-    #[error("there is no built-in model `{name}`; there are {}", shape_names())]
-    UnknownShape {
-        /// The name asked for.
-        name: String,
-    },
-    /// There is no such scheme.
-    #[error("there is no scheme `{id}`; there are {}", scheme_ids())]
-    UnknownScheme {
-        /// The id asked for.
-        id: String,
-    },
-    /// The scheme does not take this parameter.
-    #[error("the scheme {scheme} has no parameter `{key}`; it takes none")]
-    UnknownParameter {
-        /// The scheme's id.
-        scheme: &'static str,
-        /// The key given.
-        key: String,
-    },
-    /// A level below the model itself.
-    #[error("there is no level {0}: level 0 is the model itself and the lowest")]
-    NegativeLevel(i32),
-    /// The polygons make no mesh.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The level does not fit the budget.
-    #[error(transparent)]
-    Refine(#[from] RefineError),
-    /// Nothing to take back.
-    #[error("there is nothing to undo")]
-    NothingToUndo,
-    /// Nothing to do again.
-    #[error("there is nothing to redo")]
-    NothingToRedo,
-    /// A built-in model has no file.
-    #[error("{0} is built in and has no file to read again")]
-    NothingToReload(String),
-    /// The file read is not the one asked for.
-    #[error("this `{name}` is not the file that was opened before: its {differs}; open it as a new model instead")]
-    OtherFile {
-        /// The file's name.
-        name: String,
-        /// What is different: "size is 12 bytes, not 10".
-        differs: String,
-    },
-    /// A script in another version of the grammar.
-    #[error("version {0} of the commands is not known; this program knows version {VERSION}")]
-    Version(i32),
-    /// A view command hides a group that the model does not have.
-    #[error("the model has no group `{name}`{}", group_names(.groups))]
-    UnknownGroup {
-        /// The name given.
-        name: String,
-        /// The first few groups that there are.
-        groups: Vec<String>,
-    },
-}
-
-impl CommandError {
-    /// Whether the budget refused the command; the same command works with a higher one.
-    pub fn is_budget(&self) -> bool {
-        matches!(self, CommandError::Refine(RefineError::TooLarge { .. }))
-    }
-}
-
-fn shape_names() -> String {
-    SHAPES.iter().map(|s| s.name).collect::<Vec<_>>().join(", ")
-}
-
-fn scheme_ids() -> String {
-    SCHEMES.iter().map(|s| s.info.id).collect::<Vec<_>>().join(", ")
-}
-
-fn group_names(groups: &[String]) -> String {
-    if groups.is_empty() { "; it has no groups".into() } else { format!("; it has {}", groups.join(", ")) }
-}
-
-/// What `settings` of the last-wins kind are set to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Settings {
-    /// None is the model's own.
-    weld: Option<Weld>,
-    quads: bool,
-    scheme: &'static Entry,
-    boundary: Boundary,
-    level: u32,
-}
-
-/// One state of the document, sharing what it has in common with others.
-#[derive(Clone, Debug)]
-struct State {
-    source: Source,
-    model: Arc<Model>,
-    imported: Arc<[Remark]>,
-    edits: Arc<Vec<Edit>>,
-    settings: Settings,
-    base: Arc<Base>,
-    /// What the scheme refines: of `base`.
-    built: Arc<Built>,
-    /// Something that was changed to make the state possible.
-    adapted: Option<Remark>,
-}
-
-impl State {
-    fn new(source: Source, model: Model, warnings: &[Warning]) -> Result<State, CommandError> {
-        let model = Arc::new(model);
-        let base = Arc::new(Base::build(&model, false, &[], model.weld)?);
-        let scheme = find_scheme(if base.polygons.mesh.is_triangles() { "loop" } else { "catmull-clark" })?;
-        let settings = Settings { weld: None, quads: false, scheme, boundary: Boundary::default(), level: 0 };
-        let imported = warnings.iter().map(|w| Remark::new(&w.to_string(), w.is_minor())).collect();
-        let built = base.polygons.clone();
-        Ok(State { source, model, imported, edits: Arc::default(), settings, base, built, adapted: None })
-    }
-
-    fn plan(&self) -> Plan {
-        Plan { scheme: self.settings.scheme, boundary: self.settings.boundary, level: self.settings.level }
-    }
-
-    /// Whether the two lead to the same picture and the same text.
-    fn same(&self, other: &State) -> bool {
-        self.source == other.source
-            && Arc::ptr_eq(&self.model, &other.model)
-            && self.edits == other.edits
-            && self.settings == other.settings
-    }
-
-    /// Runs the pipeline again from the model.
-    fn rebuild(&mut self) -> Result<(), BuildError> {
-        let weld = self.settings.weld.unwrap_or(self.model.weld);
-        self.base = Arc::new(Base::build(&self.model, self.settings.quads, &self.edits, weld)?);
-        Ok(())
-    }
-
-    /// Chooses the mesh that the scheme takes and checks the level against the budget.
-    fn settle(&mut self, budget: u64) -> Result<(), CommandError> {
-        self.built = match self.settings.scheme.info.accepts {
-            Accepts::Triangles => self.base.triangles(&self.model)?,
-            Accepts::Polygons | Accepts::Both => self.base.polygons.clone(),
-        };
-        check(&self.built.mesh, self.plan(), budget)?;
-        Ok(())
-    }
-
-    /// The commands that lead here from nothing.
-    fn commands(&self) -> Vec<Command> {
-        let s = &self.settings;
-        let mut commands = vec![Command::Open(self.source.clone())];
-        commands.extend(s.weld.map(Command::Weld));
-        commands.extend(s.quads.then_some(Command::Quads(true)));
-        commands.extend(self.edits.iter().map(|edit| match edit {
-            Edit::Triangulate => Command::Triangulate,
-            Edit::Center => Command::Center,
-            Edit::Scale(factor) => Command::Scale(*factor),
-        }));
-        commands.push(Command::Scheme { id: s.scheme.info.id.to_owned(), parameters: Vec::new() });
-        commands.extend((s.boundary != Boundary::default()).then_some(Command::Boundary(s.boundary)));
-        commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
-        commands
-    }
-}
-
-fn find_scheme(id: &str) -> Result<&'static Entry, CommandError> {
-    scheme(id).ok_or_else(|| CommandError::UnknownScheme { id: id.to_owned() })
-}
-
-/// Refuses a plan that does not fit, with numbers. Cost: constant.
-fn check(mesh: &Arc<Mesh>, plan: Plan, budget: u64) -> Result<(), RefineError> {
-    match predict(mesh, &plan)? {
-        // The kernel's own check also counts what 32 bits can number, and words the refusal.
-        Some(p) if p.bytes <= budget && p.counts.corners < 1 << 31 => Ok(()),
-        _ => Job::new(mesh.clone(), plan, budget).map(drop),
-    }
 }
 
 /// What is being opened.
@@ -467,7 +279,7 @@ impl Document {
     fn reset_view(&mut self) {
         let (bounds, aspect) = (self.bounds(), self.aspect);
         self.view.hidden.clear();
-        self.view.camera.set_standard(crate::camera::Standard::Home, &bounds, aspect);
+        self.view.camera.set_standard(Standard::Home, &bounds, aspect);
     }
 
     fn set_view(&mut self, sets: &[ViewSet]) -> Result<Outcome, CommandError> {

@@ -17,21 +17,27 @@
 //! # Ok::<(), limn_document::CommandError>(())
 //! ```
 
+mod bounds;
 mod build;
 pub mod camera;
 pub mod command;
 pub mod document;
+mod error;
+pub mod export;
 pub mod history;
 pub mod info;
 pub mod link;
+mod pinch;
 pub mod source;
+mod state;
 pub mod view;
 pub mod words;
 
 pub use build::{BuildError, Remark};
 pub use camera::{Bounds, Camera};
 pub use command::{COMMANDS, Class, Command, ParseError};
-pub use document::{CommandError, Document, Outcome, Replayed};
+pub use document::{Document, Outcome, Replayed};
+pub use error::CommandError;
 pub use info::Info;
 pub use link::LinkError;
 pub use source::{Source, Stamp};

@@ -1,0 +1,148 @@
+//! The grammar: one table of commands that parser, help, console completion, links and the command line share.
+//!
+//! Every button, key, console line, link and script says the same text commands. [`COMMANDS`] has one row a command: its
+//! name and class, what arguments it takes, one line of help and an example. The parser knows only the table; a row's
+//! `build` turns the values that it read into a [`Command`]. [`Command`]'s `Display` is the inverse of `parse`.
+//!
+//! ```text
+//!   view            edges=bold shading=flat        level 3          info --json
+//!   name            key=value, bound to the left   name argument    name flag
+//! ```
+//!
+//! Since the table says how many words each command takes, several commands fit in a line without separators
+//! (`scheme loop level 2 info`), as the command line of the native program has them. An optional argument is taken when
+//! the next word can be one, so no optional argument may read like a command's name.
+//!
+//! The grammar has a [`VERSION`]; a command's meaning never changes within one. New commands and keys may come.
+
+mod help;
+mod parse;
+mod table;
+
+use std::fmt;
+
+use limn_mesh::{Boundary, Weld};
+
+pub use help::{complete, help};
+pub use parse::{ParseError, parse_all, parse_script, parse_words};
+pub use table::{Arg, COMMANDS, Class, Keys, Kind, Parsed, Spec, Value, spec};
+
+use crate::source::Source;
+use crate::view::ViewSet;
+use crate::words::quote;
+
+/// The version of the grammar.
+pub const VERSION: u32 = 1;
+
+/// A command, checked in form: the arguments are of their kinds and in their ranges.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Open a model.
+    Open(Source),
+    /// Which positions are one vertex.
+    Weld(Weld),
+    /// Pair triangles to quads.
+    Quads(bool),
+    /// Split faces into triangles.
+    Triangulate,
+    /// Move the middle to the origin.
+    Center,
+    /// Multiply coordinates by a finite number above 0; none makes the longest side 1.
+    Scale(Option<f32>),
+    /// Choose the scheme.
+    Scheme {
+        /// Its id; whether there is such a scheme is the document's to say.
+        id: String,
+        /// What stands behind it as `key=value`, in order.
+        parameters: Vec<(String, String)>,
+    },
+    /// What happens at the rim.
+    Boundary(Boundary),
+    /// Refine so many times.
+    Level(i32),
+    /// Change how the model is shown; in order, never empty.
+    View(Vec<ViewSet>),
+    /// Tell about the model.
+    Info {
+        /// As a JSON object.
+        json: bool,
+    },
+    /// Write the present level.
+    Export {
+        /// Where.
+        file: String,
+    },
+    /// Take back.
+    Undo,
+    /// Do again.
+    Redo,
+    /// Read the file again.
+    Reload,
+    /// The version of the grammar that a script states.
+    Version(i32),
+    /// Explain all commands, or the one with this name.
+    Help(Option<&'static str>),
+}
+
+impl Command {
+    /// The word that it begins with.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Command::Open(_) => "open",
+            Command::Weld(_) => "weld",
+            Command::Quads(_) => "quads",
+            Command::Triangulate => "triangulate",
+            Command::Center => "center",
+            Command::Scale(_) => "scale",
+            Command::Scheme { .. } => "scheme",
+            Command::Boundary(_) => "boundary",
+            Command::Level(_) => "level",
+            Command::View(_) => "view",
+            Command::Info { .. } => "info",
+            Command::Export { .. } => "export",
+            Command::Undo => "undo",
+            Command::Redo => "redo",
+            Command::Reload => "reload",
+            Command::Version(_) => "version",
+            Command::Help(_) => "help",
+        }
+    }
+
+    /// What it is about, as the table has it.
+    pub fn class(&self) -> Class {
+        spec(self.name()).map_or(Class::Action, |s| s.class)
+    }
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())?;
+        match self {
+            Command::Open(source) => write!(f, " {}", quote(&source.to_string())),
+            Command::Weld(Weld::Exact) => f.write_str(" exact"),
+            Command::Weld(Weld::Off) => f.write_str(" off"),
+            Command::Weld(Weld::Relative(fraction)) => write!(f, " {fraction}"),
+            Command::Quads(on) => f.write_str(if *on { " on" } else { " off" }),
+            Command::Scale(Some(s)) => write!(f, " {s}"),
+            Command::Scheme { id, parameters } => {
+                write!(f, " {id}")?;
+                parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
+            }
+            Command::Boundary(Boundary::EdgeOnly) => f.write_str(" edge-only"),
+            Command::Boundary(Boundary::EdgeAndCorner) => f.write_str(" edge-and-corner"),
+            Command::Level(n) | Command::Version(n) => write!(f, " {n}"),
+            Command::View(sets) => sets.iter().try_for_each(|set| write!(f, " {}", quote(&set.to_string()))),
+            Command::Info { json: true } => f.write_str(" --json"),
+            Command::Export { file } => write!(f, " {}", quote(file)),
+            Command::Help(Some(name)) => write!(f, " {name}"),
+            Command::Triangulate
+            | Command::Center
+            | Command::Scale(None)
+            | Command::Info { json: false }
+            | Command::Undo
+            | Command::Redo
+            | Command::Reload
+            | Command::Help(None) => Ok(()),
+        }
+    }
+}
