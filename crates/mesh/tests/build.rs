@@ -60,6 +60,9 @@ fn neighbours_are_turned_to_agree_with_the_majority() {
     let face = |f| mesh.topology.face_half_edges(f).map(|h| mesh.topology.origin(h)).collect::<Vec<_>>();
     assert_eq!((face(0), face(2)), (vec![0, 1, 4], vec![2, 3, 4]));
     assert_eq!(mesh.counts().boundary, 4);
+    // The odd one out comes first: it is still the one that turns.
+    let soup = Soup::from_faces(square(), &[[0, 4, 1], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+    assert_eq!(Mesh::build(&soup, Weld::Off).unwrap().1.notes, [Note::Turned { count: 1, first: 0 }]);
 }
 
 #[test]
