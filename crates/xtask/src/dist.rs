@@ -5,6 +5,7 @@
 
 use crate::arguments::Arguments;
 use crate::paths;
+use crate::process::say;
 use crate::wasm::{self, FILES, Module, Profile};
 use anyhow::{Context, Result};
 use std::fs;
@@ -13,23 +14,24 @@ use std::path::{Path, PathBuf};
 /// Builds both modules as they ship and fills `dist/`.
 pub fn run(arguments: Arguments) -> Result<()> {
     arguments.finish()?;
-    build()?;
-    report()
-}
-
-/// Builds both modules as they ship and fills `dist/`.
-pub fn build() -> Result<()> {
-    for module in Module::ALL {
-        wasm::build(module, Profile::Dist)?;
-    }
-    assemble()
-}
-
-/// Copies the page and the two built modules into a fresh `dist/`.
-pub fn assemble() -> Result<()> {
     let dist = paths::dist();
+    build(Profile::Dist, &dist)?;
+    say(format!("{} holds what a static host serves", paths::shown(&dist)));
+    report(&dist)
+}
+
+/// Builds both modules and fills `site` with them and the page.
+pub fn build(profile: Profile, site: &Path) -> Result<()> {
+    for module in Module::ALL {
+        wasm::build(module, profile)?;
+    }
+    assemble(profile, site)
+}
+
+/// Copies the page and the two built modules into a fresh folder.
+pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
     if dist.exists() {
-        fs::remove_dir_all(&dist).with_context(|| format!("could not empty {}", paths::shown(&dist)))?;
+        fs::remove_dir_all(dist).with_context(|| format!("could not empty {}", paths::shown(dist)))?;
     }
     copy(&paths::root().join("index.html"), &dist.join("index.html"))?;
     for from in files(&paths::root().join("web"))? {
@@ -41,7 +43,7 @@ pub fn assemble() -> Result<()> {
     }
     for module in Module::ALL {
         for name in FILES {
-            copy(&module.package(Profile::Dist).join(name), &dist.join("pkg").join(module.id()).join(name))?;
+            copy(&module.package(profile).join(name), &dist.join("pkg").join(module.id()).join(name))?;
         }
     }
     Ok(())
@@ -74,15 +76,14 @@ pub fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Prints every file of `dist/` with its size, raw and compressed, and what each renderer adds up to.
-pub fn report() -> Result<()> {
-    let dist = paths::dist();
+/// Prints every file of a built page with its size, raw and compressed, and what each renderer adds up to.
+pub fn report(dist: &Path) -> Result<()> {
     let mut sums = [(0, 0); 3];
     println!("{:>12} {:>12}  file", "bytes", "brotli 11");
-    for path in files(&dist)? {
+    for path in files(dist)? {
         let bytes = fs::read(&path)?;
         let small = brotli_size(&bytes)?;
-        let name = path.strip_prefix(&dist)?.display().to_string();
+        let name = path.strip_prefix(dist)?.display().to_string();
         println!("{:>12} {small:>12}  {name}", bytes.len());
         let place =
             Module::ALL.iter().position(|module| name.starts_with(&format!("pkg/{}", module.id()))).unwrap_or(2);

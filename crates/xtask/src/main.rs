@@ -14,11 +14,15 @@
 //! xtask itself lives in `target/xtask` (see `.cargo/config.toml`), native builds in `target`.
 
 mod arguments;
+mod bench;
 mod dist;
 mod paths;
 mod process;
+mod rules;
 mod serve;
 mod server;
+mod test;
+mod tidy;
 mod toolchain;
 mod wasm;
 
@@ -34,6 +38,13 @@ Usage: cargo xtask <command> [options]
             --port N         the port to listen on (default: 8080, or the next free one)
             --only MODULE    build webgpu or webgl alone
   dist    build what ships into dist/ and print its size
+  test    set up what the tests need and run them all
+            --only GROUP     native, wasm or browser
+            --filter TEXT    only tests whose names contain this
+            --quick          the page's tests on quickly built modules, without the budget of its weight
+  tidy    rustfmt, clippy, tsc and the house rules
+  bench   the kernel's benchmarks
+            --wasm           once more as WebAssembly under Node
   help    this text
 
 While `serve` runs, reload the page: what changed since is rebuilt first.
@@ -55,6 +66,9 @@ fn run() -> Result<()> {
     match command.as_str() {
         "serve" => serve::run(arguments),
         "dist" => dist::run(arguments),
+        "test" => test::run(arguments),
+        "tidy" => tidy::run(arguments),
+        "bench" => bench::run(arguments),
         "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(())

@@ -6,8 +6,9 @@
 use crate::paths;
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
+use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// Says what is about to happen.
@@ -57,6 +58,23 @@ pub fn output(command: &mut Command) -> Result<String> {
         bail!("this failed: {}\n{}", line(command), String::from_utf8_lossy(&output.stderr).trim());
     }
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// Runs a command to its end, shows its standard output line by line and hands every line to `see`.
+pub fn watch(command: &mut Command, mut see: impl FnMut(&str)) -> Result<bool> {
+    let mut child =
+        command.stdout(Stdio::piped()).spawn().with_context(|| format!("could not start: {}", line(command)))?;
+    if let Some(stdout) = child.stdout.take() {
+        let mut reader = BufReader::new(stdout);
+        let mut bytes = Vec::new();
+        while reader.read_until(b'\n', &mut bytes)? > 0 {
+            let text = String::from_utf8_lossy(&bytes);
+            print!("{text}");
+            see(text.trim_end());
+            bytes.clear();
+        }
+    }
+    Ok(child.wait()?.success())
 }
 
 /// The full path of the first of `names` that lies on the PATH.

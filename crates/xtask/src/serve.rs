@@ -50,7 +50,7 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
         }
         if profile == Profile::Dist
             && modules.len() == Module::ALL.len()
-            && let Err(error) = dist::assemble().and_then(|()| dist::report())
+            && let Err(error) = dist::assemble(profile, &paths::dist()).and_then(|()| dist::report(&paths::dist()))
         {
             eprintln!("\nxtask: {error:#}");
         }

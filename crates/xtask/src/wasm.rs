@@ -47,7 +47,8 @@ impl Module {
             .with_context(|| format!("`{id}` is no module: webgpu or webgl"))
     }
 
-    fn target(self) -> PathBuf {
+    /// The target folder that it has for itself.
+    pub fn target(self) -> PathBuf {
         paths::root().join("target").join(format!("wasm-{}", self.id()))
     }
 
@@ -91,7 +92,7 @@ pub fn build(module: Module, profile: Profile) -> Result<()> {
     if newest_source()? < modified(&stamp).unwrap_or(SystemTime::UNIX_EPOCH) {
         return Ok(());
     }
-    toolchain::ensure_wasm()?;
+    toolchain::ensure_target(toolchain::WASM)?;
     say(format!("building the {} module (profile {})", module.id(), profile.id()));
     let wasm = compile(module, profile)?;
     // cargo leaves the file alone when nothing that matters changed; then the glue is good as well.
@@ -113,19 +114,13 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     command.args(["rustc", "--package", "limn-engine", "--lib", "--crate-type", "cdylib"]);
     command.args(["--no-default-features", "--features", module.id()]);
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
-    command.env("RUSTFLAGS", flags());
+    command.env("RUSTFLAGS", toolchain::wasm_flags());
     if !process::succeeds(&mut command)? {
         // The compiler has just told the terminal; the second run, of the failing crate alone, is for the page.
         let again = command.args(["--quiet", "--color", "never"]).output()?;
         bail!("the {} module does not build\n\n{}", module.id(), String::from_utf8_lossy(&again.stderr).trim());
     }
     Ok(target.join(toolchain::WASM).join(profile.id()).join("limn_engine.wasm"))
-}
-
-/// Vector instructions are in every browser of the last years, and rustc uses them where it can prove the same bits.
-fn flags() -> String {
-    let own = "-Ctarget-feature=+simd128";
-    std::env::var("RUSTFLAGS").map_or_else(|_| own.to_owned(), |theirs| format!("{theirs} {own}"))
 }
 
 fn bind(wasm: &Path, package: &Path, profile: Profile) -> Result<()> {
