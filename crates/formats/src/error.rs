@@ -335,6 +335,11 @@ impl Warnings {
         }
     }
 
+    /// How often a kind has been counted.
+    pub fn count(&self, kind: WarningKind) -> u64 {
+        self.0.iter().find(|(w, _)| w.kind == kind).map_or(0, |(w, _)| w.count)
+    }
+
     /// The warnings, in the order of [`WarningKind`], minor ones last.
     pub fn finish(self) -> Vec<Warning> {
         let mut list: Vec<Warning> = self.0.into_iter().map(|(w, _)| w).collect();

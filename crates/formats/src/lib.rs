@@ -18,12 +18,14 @@ mod model;
 mod mtl;
 mod obj;
 mod scan;
+mod write_glb;
 mod write_obj;
 
 pub use error::{Limits, ReadError, Warning, WarningKind};
 pub use export::{Export, ExportFaces, OutFile, WriteError};
 pub use files::{Files, find};
 pub use model::{Image, Material, Model, Tags};
+pub use write_glb::write_glb;
 pub use write_obj::write_obj;
 
 /// Reads a model. `name` is the file's name: it decides when the content does not, and appears in messages.

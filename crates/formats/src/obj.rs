@@ -517,12 +517,15 @@ impl<'a> Reader<'a> {
     /// What a file without faces has.
     fn found(&self) -> String {
         let count = self.soup.positions.len();
-        let statements = "statements that are not OBJ";
+        let vertices = if count == 1 { "1 vertex".to_owned() } else { format!("{count} vertices") };
+        let lines = self.warnings.count(WarningKind::Lines) + self.warnings.count(WarningKind::Points);
+        let small = self.warnings.count(WarningKind::FaceTooSmall);
         match (count, self.unknown) {
             (0, 0) => "it has no vertices either".to_owned(),
-            (0, unknown) => format!("only {unknown} {statements} were found"),
-            (1, _) => "only 1 vertex was found".to_owned(),
-            (_, _) => format!("only {count} vertices were found"),
+            (0, unknown) => format!("it has {unknown} lines that are not OBJ statements"),
+            _ if small > 0 => format!("it has {vertices}, but no face with three corners"),
+            _ if lines > 0 => format!("it has {vertices}, and {lines} lines or points"),
+            _ => format!("it has only {vertices}"),
         }
     }
 

@@ -3,10 +3,10 @@
 //! The end of the data reads as a line break, so no caller checks for it. `\n`, `\r\n` and a lone `\r` all end a line, and
 //! a backslash before a line break counts as a space (a continuation), wherever it stands.
 //!
-//! Numbers are read as Clinger showed ("How to read floating point numbers accurately", 1990): up to 19 digits are summed
-//! in an integer, and where that integer and the power of ten are both exact in an f64, one multiplication or division
-//! gives the correctly rounded value. Everything else (long mantissas, large exponents, an f64 that lies exactly between
-//! two f32s) goes to the standard library's slower parser, so every number comes out correctly rounded to f32.
+//! Numbers are read in the spirit of Clinger ("How to read floating point numbers accurately", 1990): up to 19 digits are
+//! summed in an integer, and one multiplication or division by a power of ten gives an f64 that is wrong in its last two
+//! bits at most. Unless that f64 lies almost exactly between two f32s, rounding it gives the correctly rounded f32; the few
+//! others, longer numbers and large exponents go to the standard library's slower parser.
 
 /// Why a number could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,10 +27,10 @@ pub(crate) struct Cursor<'a> {
     line: u64,
 }
 
-/// The powers of ten that an f64 holds exactly.
-const POWERS: [f64; 23] = [
+/// Powers of ten as f64: exact up to 1e22, then rounded.
+const POWERS: [f64; 39] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
-    1e21, 1e22,
+    1e21, 1e22, 1e23, 1e24, 1e25, 1e26, 1e27, 1e28, 1e29, 1e30, 1e31, 1e32, 1e33, 1e34, 1e35, 1e36, 1e37, 1e38,
 ];
 
 impl<'a> Cursor<'a> {
@@ -162,9 +162,9 @@ impl<'a> Cursor<'a> {
         self.skip_blanks();
         let start = self.at;
         if let Some(value) = self.quick_number() {
-            // Rounding twice (to f64, then to f32) is wrong only if the f64 lies exactly between two f32s, or where f32
-            // has fewer bits than usual (below its smallest normal number).
-            let between = value.to_bits() & 0x1fff_ffff == 0x1000_0000;
+            // The dropped 29 bits are one half, give or take the f64's own error: the direction is not certain. Nor is it
+            // where f32 has fewer bits than usual (below its smallest normal number).
+            let between = (value.to_bits() & 0x1fff_ffff).abs_diff(0x1000_0000) <= 8;
             let size = value.abs();
             if !between && (size == 0.0 || (1.2e-38..3.4e38).contains(&size)) {
                 return Ok(value as f32);
@@ -174,7 +174,8 @@ impl<'a> Cursor<'a> {
         self.slow_number()
     }
 
-    /// Reads one number as an f64. Colours need it: the conversion to linear light and back must give the same f32.
+    /// Reads one number as an f64, exact but for its last bits. Colours need more than f32: the conversion to linear light
+    /// and back must give the same f32.
     pub fn double(&mut self) -> Result<f64, NumberError> {
         self.skip_blanks();
         let start = self.at;
@@ -185,7 +186,7 @@ impl<'a> Cursor<'a> {
         self.slow_number()
     }
 
-    /// A number in the range where one f64 operation rounds correctly; `None` moves the cursor to nowhere in particular.
+    /// A number of up to 19 digits, wrong in the last two bits at most; `None` leaves the cursor anywhere in the word.
     #[inline(always)]
     fn quick_number(&mut self) -> Option<f64> {
         let negative = match self.peek() {
@@ -202,7 +203,9 @@ impl<'a> Cursor<'a> {
         let mut mantissa = 0u64;
         let start = self.at;
         mantissa = self.digits(mantissa);
-        let mut digits = self.at - start;
+        // A lone zero before the point takes no room in the sum.
+        let mut digits = if mantissa == 0 && self.at == start + 1 { 0 } else { self.at - start };
+        let mut any = self.at > start;
         let mut exponent = 0i32;
         if self.peek() == b'.' {
             self.at += 1;
@@ -210,12 +213,10 @@ impl<'a> Cursor<'a> {
             mantissa = self.digits(mantissa);
             let decimals = self.at - point;
             digits += decimals;
-            if decimals > 40 {
-                return None;
-            }
-            exponent = -(decimals as i32);
+            any |= decimals > 0;
+            exponent = -(decimals.min(100) as i32);
         }
-        if digits == 0 || digits > 19 || mantissa > 1 << 53 {
+        if !any || digits > 19 {
             return None;
         }
         if matches!(self.peek(), b'e' | b'E') {
@@ -274,17 +275,18 @@ impl<'a> Cursor<'a> {
         let whole = self.word();
         // A comment may touch the number.
         let word = whole.split(|b| *b == b'#').next().unwrap_or_default();
-        // What C libraries print: "-nan(ind)", "1.#QNAN", "-1.#INF".
-        let lower = whole.to_ascii_lowercase();
-        let bare = lower.strip_prefix(b"-").or(lower.strip_prefix(b"+")).unwrap_or(&lower);
-        let error = if [&b"nan"[..], b"inf", b"1.#"].iter().any(|p| bare.starts_with(p)) {
-            NumberError::NotFinite
-        } else {
-            match std::str::from_utf8(word).ok().map(str::parse::<T>) {
-                Some(Ok(value)) if value.into().is_finite() => return Ok(value),
-                Some(Ok(_)) => NumberError::NotFinite,
-                _ => NumberError::NotANumber,
-            }
+        let special = |word: &[u8]| {
+            // What C libraries print: "-nan(ind)", "1.#QNAN", "-1.#INF".
+            let lower = word.to_ascii_lowercase();
+            let bare = lower.strip_prefix(b"-").or(lower.strip_prefix(b"+")).unwrap_or(&lower);
+            [&b"nan"[..], b"inf", b"1.#"].iter().any(|p| bare.starts_with(p))
+        };
+        let touching = word.len() < whole.len();
+        let error = match std::str::from_utf8(word).ok().map(str::parse::<T>) {
+            Some(Ok(value)) if value.into().is_finite() && !(touching && special(whole)) => return Ok(value),
+            Some(Ok(_)) => NumberError::NotFinite,
+            _ if special(whole) => NumberError::NotFinite,
+            _ => NumberError::NotANumber,
         };
         *self = start;
         Err(error)

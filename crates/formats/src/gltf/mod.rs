@@ -56,8 +56,15 @@ const KNOWN: [&str; 13] = [
 ];
 
 /// What required extensions begin with if a shape can be read without them.
-const HARMLESS: [&str; 6] =
-    ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_", "KHR_animation_pointer"];
+const HARMLESS: [&str; 7] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+    "KHR_animation_pointer",
+    "KHR_techniques_webgl",
+];
 
 /// Reads a glTF file of either kind.
 pub(crate) fn read(

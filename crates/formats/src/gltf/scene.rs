@@ -446,7 +446,9 @@ fn children(value: &Value, key: &str, count: usize, place: std::fmt::Arguments<'
     list(value, key)
         .iter()
         .map(|child| {
-            let number = child.as_u64().and_then(|n| usize::try_from(n).ok()).filter(|n| *n < count);
+            // Some writers print 3.0.
+            let number =
+                child.as_f64().filter(|n| *n >= 0.0 && n.trunc() == *n && *n < count as f64).map(|n| n as usize);
             number.ok_or_else(|| bad(place, format!("its {key} name node {child}, but the file has only {count}")))
         })
         .collect()
