@@ -37,6 +37,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     wrong.iter().for_each(|sentence| println!("{sentence}"));
     check("house rules", wrong.is_empty());
 
+    toolchain::ensure_components()?;
     say("rustfmt");
     check("rustfmt", process::succeeds(process::cargo().args(["fmt", "--all", "--check"]))?);
 

@@ -41,6 +41,23 @@ pub fn ensure_target(target: &str) -> Result<()> {
         .with_context(|| format!("rustup could not add the target {target}"))
 }
 
+/// Sees to it that rustfmt and clippy are there.
+pub fn ensure_components() -> Result<()> {
+    for (command, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+        if process::output(process::cargo().args([command, "--version"])).is_ok() {
+            continue;
+        }
+        if process::on_path(&["rustup", "rustup.exe"]).is_none() {
+            bail!(
+                "this Rust has no {component} and there is no rustup to add it: install your system's package for it"
+            );
+        }
+        say(format!("adding Rust's component {component}"));
+        process::run(process::program("rustup").args(["component", "add", component]))?;
+    }
+    Ok(())
+}
+
 /// Sees to it that Node 20 or newer is there.
 pub fn ensure_node() -> Result<()> {
     let version = process::output(process::program("node").arg("--version"))
