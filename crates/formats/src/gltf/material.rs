@@ -35,9 +35,9 @@ pub(super) struct Materials<'s> {
     pub pictures: Vec<Image>,
 }
 
-/// Properties that change how a surface looks and that Limn does not show.
+/// Properties that change how a surface looks and that Limn does not show. The metallic and roughness factors are not
+/// counted: every material has them, written or not.
 const UNUSED: [&str; 4] = ["normalTexture", "occlusionTexture", "emissiveTexture", "emissiveFactor"];
-const UNUSED_METAL: [&str; 3] = ["metallicFactor", "roughnessFactor", "metallicRoughnessTexture"];
 
 impl<'s> Materials<'s> {
     pub fn new(source: &'s Source<'s>) -> Self {
@@ -98,7 +98,7 @@ impl<'s> Materials<'s> {
 
     fn count_unused(&self, value: &Value, metal: Option<&Value>, warnings: &mut Warnings) {
         let plain = UNUSED.iter().filter(|key| value.get(**key).is_some()).count();
-        let metallic = UNUSED_METAL.iter().filter(|key| metal.is_some_and(|m| m.get(**key).is_some())).count();
+        let metallic = usize::from(metal.is_some_and(|m| m.get("metallicRoughnessTexture").is_some()));
         let extensions = value.get("extensions").and_then(Value::as_object).map_or(0, |e| {
             e.keys().filter(|k| k.starts_with("KHR_materials_") && *k != "KHR_materials_pbrSpecularGlossiness").count()
         });

@@ -97,7 +97,7 @@ fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
     // In glTF 1.0 the lists were maps.
     let old = ["meshes", "nodes", "accessors"].iter().any(|key| source.root.get(*key).is_some_and(|v| v.is_object()));
     let refuse = |version: String| Err(ReadError::Version { file: source.file.to_owned(), version });
-    match version {
+    match version.filter(|v| !v.is_empty()) {
         _ if old => refuse("1.0".to_owned()),
         None => {
             Err(bad(format_args!("asset"), format!("{} does not state a glTF version, so it is not glTF", source.file)))
