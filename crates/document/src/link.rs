@@ -47,7 +47,7 @@ pub enum LinkError {
         /// That part, unescaped.
         text: String,
         /// What is wrong with it.
-        error: ParseError,
+        error: Box<ParseError>,
     },
     /// A command that acts rather than describes.
     #[error("part {part} of the link, `{text}`, is an action; a link only holds a model and how it is shown")]
@@ -126,7 +126,7 @@ pub fn read(fragment: &str) -> Result<Vec<Command>, LinkError> {
 fn read_part(part: usize, text: &str) -> Result<Command, LinkError> {
     let plain = unescape(text, true).ok_or_else(|| LinkError::Escape { part, text: shorten(text) })?;
     match plain.parse::<Command>() {
-        Err(error) => Err(LinkError::Command { part, text: shorten(&plain), error }),
+        Err(error) => Err(LinkError::Command { part, text: shorten(&plain), error: error.into() }),
         Ok(command) if command.class() == Class::Action => Err(LinkError::Action { part, text: shorten(&plain) }),
         Ok(command) => Ok(command),
     }

@@ -25,7 +25,7 @@ pub enum ParseError {
     #[error("there is no command here; `help` lists them")]
     Empty,
     /// No command has this name.
-    #[error("there is no command `{word}`{}; `help` lists them", did_you_mean(*.near))]
+    #[error("there is no command `{word}`; {}", did_you_mean(*.near))]
     Unknown {
         /// What stands where a command belongs.
         word: String,
@@ -97,7 +97,7 @@ pub enum ParseError {
 }
 
 fn did_you_mean(near: Option<&'static str>) -> String {
-    near.map_or_else(String::new, |name| format!("; did you mean `{name}`"))
+    near.map_or_else(|| "`help` lists them".to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
 fn known(keys: &[&'static str]) -> String {
