@@ -22,6 +22,9 @@ use crate::soup::{NONE, Soup};
 /// Cosine of the largest fold between two triangles that may become a quad (45 degrees).
 const FOLD: f64 = 0.707;
 
+/// The same for two triangles written as an exporter writes a quad's halves (about 75 degrees).
+const WRITTEN_FOLD: f64 = 0.26;
+
 /// The cosine of a corner, in magnitude, from which a quad's shape is worth nothing (about 26 and 154 degrees).
 const SKEW: f64 = 0.9;
 
@@ -46,7 +49,7 @@ pub struct PairReport {
     pub confidence: f32,
 }
 
-/// Two triangles that may become a quad.
+/// Two triangles that may become a quad. With quality 0 they do so only where an exporter's order says it.
 #[derive(Clone, Copy)]
 struct Pair {
     /// The triangles, the lower face number first.
@@ -178,8 +181,8 @@ fn judge(soup: &Soup, faces: [u32; 2], corners: [u8; 2]) -> Option<Pair> {
         worst = worst.max(dot(before, after).abs());
     }
     let square = 1.0 - (worst / SKEW) * (worst / SKEW);
-    let quality = flat.min(1.0) * square;
-    (flat > 0.0 && square > 0.0).then_some(Pair { faces, corners, quality })
+    let quality = if flat > 0.0 && square > 0.0 { flat.min(1.0) * square } else { 0.0 };
+    (dot(m, n) > WRITTEN_FOLD).then_some(Pair { faces, corners, quality })
 }
 
 /// A matching of faces over candidate pairs.
@@ -266,7 +269,7 @@ impl<'a> Matching<'a> {
 
     /// Matches what is left, by quality plus lead; ties by the lowest faces.
     fn match_greedily(&mut self) {
-        let free = |p: &Pair| p.faces.iter().all(|&f| self.is_free(f));
+        let free = |p: &Pair| p.quality > 0.0 && p.faces.iter().all(|&f| self.is_free(f));
         let mut rest: Vec<u32> = (0..self.pairs.len() as u32).filter(|&i| free(&self.pairs[i as usize])).collect();
         let pairs = self.pairs;
         let score: Vec<f64> = (0..pairs.len() as u32).map(|i| pairs[i as usize].quality + self.lead(i)).collect();
@@ -299,7 +302,7 @@ impl<'a> Matching<'a> {
                 for &cd in self.pairs_of(c) {
                     let d = self.other(cd, c);
                     let quality = self.pairs[ab as usize].quality.min(self.pairs[cd as usize].quality);
-                    if d != a && self.is_free(d) && best.is_none_or(|(q, ..)| quality > q) {
+                    if quality > 0.0 && d != a && self.is_free(d) && best.is_none_or(|(q, ..)| quality > q) {
                         best = Some((quality, ab, cd));
                     }
                 }

@@ -11,6 +11,7 @@
 //!   pawn  mouse  creature
 //! ```
 
+mod cage;
 mod creature;
 mod mouse;
 mod pawn;

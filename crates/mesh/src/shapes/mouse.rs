@@ -16,28 +16,34 @@ use crate::soup::Soup;
 
 /// Front to back: z, half width and height of the top's rows, half width of the bottom's.
 const ROWS: [[f32; 4]; 5] = [
-    [0.98, 0.46, -0.12, 0.52],
-    [0.60, 0.56, 0.10, 0.64],
-    [0.12, 0.56, 0.26, 0.64],
-    [-0.50, 0.62, 0.34, 0.72],
-    [-1.00, 0.44, 0.00, 0.52],
+    [0.92, 0.46, -0.12, 0.50],
+    [0.58, 0.56, 0.10, 0.62],
+    [0.10, 0.58, 0.27, 0.64],
+    [-0.48, 0.64, 0.34, 0.72],
+    [-0.92, 0.44, 0.06, 0.48],
 ];
 
-/// Where the columns stand between the left side and the right, on top and underneath, and how far the top's sag.
-const COLUMNS: [[f32; 3]; 5] =
-    [[-1.0, -1.0, 0.14], [-0.24, -0.5, 0.0], [0.0, 0.0, 0.0], [0.24, 0.5, 0.0], [1.0, 1.0, 0.14]];
+/// Where the columns stand between the left side and the right, on top and underneath; how far the top's sag; and how far
+/// their ends bulge to the front and the back.
+const COLUMNS: [[f32; 4]; 5] = [
+    [-1.0, -1.0, 0.16, -0.08],
+    [-0.24, -0.5, 0.01, 0.10],
+    [0.0, 0.0, 0.0, 0.12],
+    [0.24, 0.5, 0.01, 0.10],
+    [1.0, 1.0, 0.16, -0.08],
+];
 
 /// Height of the bottom.
 const FLOOR: f32 = -0.36;
 
 /// The wheel's top: x, y, z of its six corners, round from the front left.
 const WHEEL: [[f32; 3]; 6] = [
-    [-0.09, 0.24, 0.54],
-    [0.0, 0.25, 0.54],
-    [0.09, 0.24, 0.54],
-    [0.09, 0.33, 0.22],
-    [0.0, 0.34, 0.22],
-    [-0.09, 0.33, 0.22],
+    [-0.08, 0.19, 0.50],
+    [0.0, 0.20, 0.53],
+    [0.08, 0.19, 0.50],
+    [0.08, 0.28, 0.20],
+    [0.0, 0.29, 0.17],
+    [-0.08, 0.28, 0.20],
 ];
 
 /// The mouse: 57 vertices, 109 edges, 53 quads and a hexagon.
@@ -49,12 +55,14 @@ pub fn mouse() -> Soup {
     let (lens_left, lens_right) = (bottom(2, 2), 50);
     let wheel = 51;
 
+    // Only the rows at the ends bulge.
+    let end = |z: f32| if z.abs() > 0.9 { z.signum() } else { 0.0 };
     let mut soup = Soup::default();
     for [z, half, height, _] in ROWS {
-        soup.positions.extend(COLUMNS.map(|[x, _, sag]| [x * half, height - sag, z]));
+        soup.positions.extend(COLUMNS.map(|[x, _, sag, bulge]| [x * half, height - sag, z + end(z) * bulge]));
     }
     for [z, _, _, half] in ROWS {
-        soup.positions.extend(COLUMNS.map(|[_, x, _]| [x * half, FLOOR, z]));
+        soup.positions.extend(COLUMNS.map(|[_, x, _, bulge]| [x * half, FLOOR, z + end(z) * bulge]));
     }
     soup.positions[lens_left as usize][0] = -0.125;
     soup.positions.push([0.125, FLOOR, ROWS[2][0]]);
