@@ -212,7 +212,7 @@ impl Mesh {
     /// [`TopologyError`]; the checks come before anything is built.
     pub fn build(soup: &Soup, how: Weld) -> Result<(Mesh, Report), TopologyError> {
         check(soup)?;
-        let weld_class = weld(&soup.positions, how);
+        let weld_class = weld(&soup.positions, &soup.parts, how);
         let mut notes = Vec::new();
         let welded = weld_class.iter().enumerate().filter(|(i, c)| *i as u32 != **c).count() as u64;
         note(&mut notes, welded, || Note::Welded { count: welded });
@@ -324,6 +324,7 @@ fn check(soup: &Soup) -> Result<(), TopologyError> {
     let fits = |len: usize, want: usize| len == 0 || len == want;
     for (ok, what) in [
         (ends_well, "face offsets"),
+        (fits(soup.parts.len(), soup.positions.len()), "parts"),
         (fits(soup.colors.len(), soup.positions.len()), "vertex colours"),
         (fits(soup.uv_corners.len(), corners), "texture coordinates"),
         (fits(soup.face_groups.len(), soup.face_count()), "groups"),

@@ -17,6 +17,9 @@ pub const NONE: u32 = u32::MAX;
 pub struct Soup {
     /// Vertex positions in file order.
     pub positions: Vec<[f32; 3]>,
+    /// The part of each position: welding joins positions of one part only, so that objects which touch stay apart. Empty
+    /// if all are of one.
+    pub parts: Vec<u32>,
     /// Where each face's corners begin in `corners`; one longer than the number of faces (empty means no faces).
     pub offsets: Vec<u32>,
     /// The position index of each corner.

@@ -27,12 +27,17 @@ pub enum Weld {
 }
 
 /// The lowest position index of every position's class. Positions must be finite.
-pub(crate) fn weld(positions: &[[f32; 3]], weld: Weld) -> Vec<u32> {
+/// `parts` (empty, or one for each position) keeps positions of different parts apart.
+pub(crate) fn weld(positions: &[[f32; 3]], parts: &[u32], weld: Weld) -> Vec<u32> {
     match weld {
         Weld::Off => (0..positions.len() as u32).collect(),
-        Weld::Exact => exact(positions),
-        Weld::Relative(fraction) => relative(positions, fraction),
+        Weld::Exact => exact(positions, parts),
+        Weld::Relative(fraction) => relative(positions, parts, fraction),
     }
+}
+
+fn part(parts: &[u32], i: usize) -> u32 {
+    parts.get(i).copied().unwrap_or(0)
 }
 
 /// Smallest and largest coordinates; zeros for no positions.
@@ -50,8 +55,8 @@ pub fn bounds(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
 
 const EMPTY: u32 = u32::MAX;
 
-/// Mixes three words into a table slot (the finaliser of MurmurHash3, applied thrice).
-fn slot(key: [u32; 3], mask: usize) -> usize {
+/// Mixes three words into a table slot (the finaliser of MurmurHash3, applied to each).
+fn slot<const N: usize>(key: [u32; N], mask: usize) -> usize {
     let mut x = 0u64;
     for k in key {
         x = (x ^ u64::from(k)).wrapping_mul(0xff51_afd7_ed55_8ccd);
@@ -64,14 +69,17 @@ fn table(entries: usize) -> Vec<u32> {
     vec![EMPTY; (entries.max(4) * 2).next_power_of_two()]
 }
 
-fn exact(positions: &[[f32; 3]]) -> Vec<u32> {
+fn exact(positions: &[[f32; 3]], parts: &[u32]) -> Vec<u32> {
     // Adding zero turns -0 into 0, so that the bit patterns of equal numbers are equal.
-    let key = |p: &[f32; 3]| p.map(|x| (x + 0.0).to_bits());
+    let key = |i: usize| {
+        let [x, y, z] = positions[i].map(|x| (x + 0.0).to_bits());
+        [x, y, z, part(parts, i)]
+    };
     let mut slots = table(positions.len());
     let mask = slots.len() - 1;
     let mut class = Vec::with_capacity(positions.len());
-    for (i, p) in positions.iter().enumerate() {
-        let k = key(p);
+    for i in 0..positions.len() {
+        let k = key(i);
         let mut s = slot(k, mask);
         let lowest = loop {
             match slots[s] {
@@ -79,7 +87,7 @@ fn exact(positions: &[[f32; 3]]) -> Vec<u32> {
                     slots[s] = i as u32;
                     break i as u32;
                 }
-                j if key(&positions[j as usize]) == k => break j,
+                j if key(j as usize) == k => break j,
                 _ => s = (s + 1) & mask,
             }
         };
@@ -88,12 +96,12 @@ fn exact(positions: &[[f32; 3]]) -> Vec<u32> {
     class
 }
 
-fn relative(positions: &[[f32; 3]], fraction: f32) -> Vec<u32> {
+fn relative(positions: &[[f32; 3]], parts: &[u32], fraction: f32) -> Vec<u32> {
     let [low, high] = bounds(positions).map(|c| c.map(f64::from));
     let diagonal = libm::sqrt((0..3).map(|k| (high[k] - low[k]) * (high[k] - low[k])).sum());
     let tolerance = diagonal * f64::from(fraction);
     if tolerance <= 0.0 || tolerance.is_nan() {
-        return exact(positions);
+        return exact(positions, parts);
     }
     // Far-off cells only cost time, never correctness: distances are checked.
     let cell_of = |p: &[f32; 3]| -> [i64; 3] {
@@ -113,7 +121,7 @@ fn relative(positions: &[[f32; 3]], fraction: f32) -> Vec<u32> {
                 let q = &positions[j as usize];
                 let d: f64 =
                     (0..3).map(|k| (f64::from(p[k]) - f64::from(q[k])) * (f64::from(p[k]) - f64::from(q[k]))).sum();
-                if d <= tolerance * tolerance {
+                if d <= tolerance * tolerance && part(parts, i) == part(parts, j as usize) {
                     best = best.min(j);
                 }
                 j = next[j as usize];
@@ -136,21 +144,28 @@ mod tests {
     #[test]
     fn exact_joins_equal_and_nothing_else() {
         let p = [[0.0, 1.0, 2.0], [-0.0, 1.0, 2.0], [0.0, 1.0, 2.0000002], [0.0, 1.0, 2.0]];
-        assert_eq!(weld(&p, Weld::Exact), [0, 0, 2, 0]);
-        assert_eq!(weld(&p, Weld::Off), [0, 1, 2, 3]);
+        assert_eq!(weld(&p, &[], Weld::Exact), [0, 0, 2, 0]);
+        assert_eq!(weld(&p, &[], Weld::Off), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn parts_stay_apart() {
+        let p = [[0.0; 3], [0.0; 3], [0.0; 3], [1.0; 3]];
+        assert_eq!(weld(&p, &[0, 1, 1, 1], Weld::Exact), [0, 1, 1, 3]);
+        assert_eq!(weld(&p, &[0, 1, 0, 1], Weld::Relative(1e-3)), [0, 1, 0, 3]);
     }
 
     #[test]
     fn relative_takes_the_lowest_within_reach_across_cells() {
         let p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.999, 0.0, 0.0], [0.0011, 0.0, 0.0], [0.5, 0.0, 0.0]];
-        assert_eq!(weld(&p, Weld::Relative(0.002)), [0, 1, 1, 0, 4]);
-        assert_eq!(weld(&p, Weld::Relative(0.0)), [0, 1, 2, 3, 4]);
+        assert_eq!(weld(&p, &[], Weld::Relative(0.002)), [0, 1, 1, 0, 4]);
+        assert_eq!(weld(&p, &[], Weld::Relative(0.0)), [0, 1, 2, 3, 4]);
     }
 
     #[test]
     fn many_positions_in_one_place_stay_linear() {
         let p = vec![[1.0, 2.0, 3.0]; 200_000];
-        assert!(weld(&p, Weld::Exact).iter().all(|&c| c == 0));
-        assert!(weld(&p, Weld::Relative(1e-3)).iter().all(|&c| c == 0));
+        assert!(weld(&p, &[], Weld::Exact).iter().all(|&c| c == 0));
+        assert!(weld(&p, &[], Weld::Relative(1e-3)).iter().all(|&c| c == 0));
     }
 }
