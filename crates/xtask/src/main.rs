@@ -45,6 +45,8 @@ Usage: cargo xtask <command> [options]
   tidy    rustfmt, clippy, tsc and the house rules
   bench   the kernel's benchmarks
             --wasm           once more as WebAssembly under Node
+  screenshots
+          pictures of the page, on a laptop and a phone, dark and light, under target/screenshots
   help    this text
 
 While `serve` runs, reload the page: what changed since is rebuilt first.
@@ -67,6 +69,7 @@ fn run() -> Result<()> {
         "serve" => serve::run(arguments),
         "dist" => dist::run(arguments),
         "test" => test::run(arguments),
+        "screenshots" => test::screenshots(arguments),
         "tidy" => tidy::run(arguments),
         "bench" => bench::run(arguments),
         "help" | "--help" | "-h" => {

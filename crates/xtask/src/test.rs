@@ -128,27 +128,40 @@ fn same_bits(tally: &mut Tally) -> Result<()> {
     Ok(())
 }
 
-fn browser(filter: Option<&str>, quick: bool, tally: &mut Tally) -> Result<()> {
+/// Saves pictures of the page under `target/screenshots`.
+pub fn screenshots(arguments: Arguments) -> Result<()> {
+    arguments.finish()?;
+    let mut node = page(true)?;
+    process::run(node.arg("tests/browser/screenshots.mjs"))
+}
+
+/// Sets up what the page's tests need, and returns a Node that knows where it is.
+fn page(quick: bool) -> Result<Command> {
     toolchain::ensure_packages()?;
     let chrome = toolchain::ensure_chromium()?;
     let site = if quick { paths::root().join("target/site") } else { paths::dist() };
     dist::build(if quick { Profile::Serve } else { Profile::Dist }, &site)?;
+    let mut node = process::program("node");
+    node.env("CHROME", chrome).env("LIMN_SITE", site).env("LIMN_CLI", cli());
+    if quick {
+        node.env("LIMN_QUICK", "1");
+    }
+    Ok(node)
+}
+
+fn browser(filter: Option<&str>, quick: bool, tally: &mut Tally) -> Result<()> {
+    let mut command = page(quick)?;
     say("building the command line that reads the page's files back");
     process::run(process::cargo().args(["build", "--quiet", "--package", "limn"]))?;
-    say(format!("browser tests, in {}", chrome.display()));
+    say("browser tests");
     let mut files = dist::files(&paths::root().join("tests/browser"))?;
     files.retain(|file| file.to_string_lossy().ends_with(".test.mjs"));
-    let mut command = process::program("node");
     // One file at a time: each measures, and software drawing takes every core there is.
     command.args(["--test", "--test-reporter=spec", "--test-concurrency=1"]);
     if let Some(filter) = filter {
         command.arg("--test-name-pattern").arg(filter);
     }
-    command.args(files).env("CHROME", chrome).env("LIMN_SITE", site).env("LIMN_CLI", cli());
-    if quick {
-        command.env("LIMN_QUICK", "1");
-    }
-    tally.node("browser tests", &mut command)
+    tally.node("browser tests", command.args(files))
 }
 
 fn cli() -> impl AsRef<std::ffi::OsStr> {
