@@ -13,13 +13,15 @@
  * What the engine asks of its surroundings, beside the messages that go on to the page.
  * @typedef {{ type: "fetch", url: string, turn: number }
  *   | { type: "decode", index: number, mime: string, bytes: Uint8Array<ArrayBuffer>, turn: number }
- *   | { type: "png", name: string }} Wish
+ *   | { type: "png", name: string, width: number, height: number, bytes: Uint8Array<ArrayBuffer> }} Wish
  */
 
 /** One slice of work, in milliseconds. */
 const SLICE = 8;
 /** The most that is read from an address, in bytes. */
 const MOST_FETCHED = 1 << 30;
+/** Larger pictures are made smaller while they are decoded: the longest side in pixels. */
+const MOST_PIXELS = 4096;
 
 /**
  * @param {(message: FromEngine, transfer?: Transferable[]) => void} post
@@ -28,8 +30,6 @@ const MOST_FETCHED = 1 << 30;
 export function createHost(post) {
   /** @type {Engine | null} */
   let engine = null;
-  /** @type {OffscreenCanvas | HTMLCanvasElement | null} */
-  let canvas = null;
   /** @type {ToEngine[]} */
   const waiting = [];
   let dead = false;
@@ -85,7 +85,7 @@ export function createHost(post) {
     if (message.type === "fault") dead = true;
     if (message.type === "fetch") void download(message.url, message.turn);
     else if (message.type === "decode") void decode(message);
-    else if (message.type === "png") void picture(message.name);
+    else if (message.type === "png") void picture(message);
     else if (message.type === "file") post(message, [message.bytes.buffer]);
     else post(message);
   };
@@ -124,32 +124,32 @@ export function createHost(post) {
 
   /** @param {Extract<Wish, { type: "decode" }>} wish */
   const decode = async ({ index, mime, bytes, turn }) => {
+    /** @type {ImageBitmap | undefined} */
+    let bitmap;
     try {
       const options = /** @type {const} */ ({ premultiplyAlpha: "none", colorSpaceConversion: "none" });
-      const bitmap = await createImageBitmap(new Blob([bytes], { type: mime }), options);
-      const shrink = Math.min(1, 4096 / Math.max(bitmap.width, bitmap.height));
-      const width = Math.max(1, Math.round(bitmap.width * shrink));
-      const height = Math.max(1, Math.round(bitmap.height * shrink));
-      const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-      if (!context) throw new Error("no 2D canvas");
-      context.drawImage(bitmap, 0, 0, width, height);
-      bitmap.close();
-      const pixels = new Uint8Array(context.getImageData(0, 0, width, height).data.buffer);
-      enter((e) => e.decoded(turn, index, width, height, pixels));
+      const blob = new Blob([bytes], { type: mime });
+      bitmap = await createImageBitmap(blob, options);
+      const shrink = MOST_PIXELS / Math.max(bitmap.width, bitmap.height);
+      if (shrink < 1) {
+        const side = (/** @type {number} */ n) => Math.max(1, Math.round(n * shrink));
+        bitmap = await createImageBitmap(blob, { ...options, resizeWidth: side(bitmap.width), resizeHeight: side(bitmap.height) });
+      }
     } catch {
-      enter((e) => e.decoded(turn, index, 0, 0, new Uint8Array()));
+      bitmap = undefined;
     }
+    enter((e) => e.decoded(turn, index, bitmap));
   };
 
-  /** The canvas as a PNG; its picture was drawn in this very task. @param {string} name */
-  const picture = async (name) => {
+  /** @param {Extract<Wish, { type: "png" }>} wish */
+  const picture = async ({ name, width, height, bytes }) => {
     try {
-      if (!canvas) return;
-      const blob = "convertToBlob" in canvas
-        ? await canvas.convertToBlob({ type: "image/png" })
-        : await new Promise((done) => /** @type {HTMLCanvasElement} */ (canvas).toBlob(done, "image/png"));
-      const bytes = new Uint8Array(await /** @type {Blob} */ (blob).arrayBuffer());
-      post({ type: "file", name, mime: "image/png", bytes }, [bytes.buffer]);
+      const paper = new OffscreenCanvas(width, height);
+      const pixels = new Uint8ClampedArray(bytes.buffer, bytes.byteOffset, bytes.length);
+      paper.getContext("2d")?.putImageData(new ImageData(pixels, width, height), 0, 0);
+      const blob = await paper.convertToBlob({ type: "image/png" });
+      const png = new Uint8Array(await blob.arrayBuffer());
+      post({ type: "file", name, mime: "image/png", bytes: png }, [png.buffer]);
     } catch (error) {
       post({ type: "card", card: { id: "png", kind: "error", title: "The picture could not be saved", lines: [String(error)], ask: "" } });
     }
@@ -157,7 +157,9 @@ export function createHost(post) {
 
   /** @param {Extract<ToEngine, { type: "start" }>} start */
   const begin = async (start) => {
-    canvas = start.canvas;
+    const { canvas } = start;
+    // On WebGL2 nobody but the canvas tells that the device is gone.
+    canvas.addEventListener("webglcontextlost", () => fault("the graphics device was lost"));
     const renderer = start.renderer ?? (await probe());
     const folder = renderer === "webgpu" ? "webgpu" : "webgl";
     try {
@@ -166,7 +168,8 @@ export function createHost(post) {
       const module = await import(new URL("limn_engine.js", base).href);
       await module.default({ module_or_path: wasm });
       const { width, height, scale, insets } = start.size;
-      engine = await module.Engine.create(canvas, renderer, width, height, scale, insets, start.theme, emit);
+      const memory = Reflect.get(navigator, "deviceMemory") ?? 8;
+      engine = await module.Engine.create(canvas, renderer, width, height, scale, insets, start.theme, start.calm, memory, emit);
     } catch (error) {
       dead = true;
       post({ type: "fault", kind: "renderer", message: `${renderer === "webgpu" ? "WebGPU" : "WebGL2"}: ${error instanceof Error ? error.message : error}` });
@@ -204,7 +207,7 @@ export function createHost(post) {
         enter((e) => e.replay(message.text, "", [], []));
         break;
       case "cmd":
-        enter((e) => e.command(message.text, message.echo ?? false));
+        enter((e) => e.command(message.text, message.echo ?? false, message.drag ?? false));
         break;
       case "input":
         enter((e) => e.input(message.batch));

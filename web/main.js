@@ -57,7 +57,7 @@ const size = () => {
 const engine = new Supervisor(receive, size, theme);
 const send = (/** @type {string} */ text, /** @type {boolean} */ echo = false) => engine.send({ type: "cmd", text, echo });
 const sendSize = () => engine.send({ type: "size", size: size() });
-const ruler = new Ruler(send);
+const ruler = new Ruler((text, drag) => engine.send({ type: "cmd", text, drag }));
 const chrome = new Chrome(send);
 const panel = new Panel(send, sendSize);
 const link = new Link((text) => engine.send({ type: "replay", text }));

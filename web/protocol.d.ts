@@ -32,6 +32,8 @@ export type ToEngine =
       renderer: Renderer | null;
       size: Size;
       theme: Theme;
+      /** No motion, please. */
+      calm: boolean;
       /** A link's fragment or a document's text; empty for a first visit. */
       text: string;
       files: NamedFile[];
@@ -41,7 +43,7 @@ export type ToEngine =
   | { type: "open"; files: NamedFile[] }
   | { type: "reload"; files: NamedFile[] }
   | { type: "replay"; text: string }
-  | { type: "cmd"; text: string; echo?: boolean }
+  | { type: "cmd"; text: string; echo?: boolean; drag?: boolean }
   | { type: "input"; batch: Float32Array }
   | { type: "size"; size: Size }
   | { type: "theme"; theme: Theme }
@@ -158,6 +160,8 @@ export interface State {
   undo: string | null;
   redo: string | null;
   text: string;
+  /** The part of `text` that opens the model. */
+  origin: string;
   /** The fragment of a link to this picture, with its "#". */
   link: string;
   /** What the receiver of the link will miss; empty if nothing. */

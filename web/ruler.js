@@ -24,7 +24,7 @@ export class Ruler {
   #held = false;
   #wheel = 0;
 
-  /** @param {(command: string) => void} send */
+  /** @param {(command: string, drag: boolean) => void} send */
   constructor(send) {
     this.send = send;
     this.#root.append(this.#rail, this.#done, this.#pending, this.#thumb);
@@ -129,6 +129,9 @@ export class Ruler {
     if (!this.#held) return;
     this.#held = false;
     this.#root.classList.remove("held");
+    // The same level once more, not as part of a drag: whatever comes next is an undo step of its own.
+    const last = this.#state?.levels[this.#asked >= 0 ? this.#asked : this.#state.level];
+    if (last) this.send(last.command, false);
     this.#place(this.#asked >= 0 ? this.#asked : (this.#state?.level ?? 0));
     this.#count();
   }
@@ -169,7 +172,7 @@ export class Ruler {
     if (wanted === current) return;
     this.#asked = wanted;
     const command = this.#state?.levels[wanted]?.command;
-    if (command) this.send(command);
+    if (command) this.send(command, this.#held);
     if (!this.#held) this.#place(wanted);
     this.#count();
   }

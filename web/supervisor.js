@@ -26,7 +26,9 @@ export class Supervisor {
   /** @type {HTMLCanvasElement | null} */ #canvas = null;
   /** @type {NamedFile[]} */ #files = [];
   /** Files that are on their way: they become the source once the engine shows them. @type {NamedFile[] | null} */ #coming = null;
-  /** The text of the last state with nothing going on. */ #settled = "";
+  /** The text of the last state with nothing going on, and the part of it that opens the model. */
+  #settled = "";
+  #origin = "";
   /** @type {Renderer | null} */ #renderer;
   #attempt = 0;
   #since = 0;
@@ -63,7 +65,8 @@ export class Supervisor {
     this.#since = this.#heard = performance.now();
     this.#reading = true;
     const size = this.size();
-    const message = { renderer: this.#renderer, size, theme: this.theme(), text, files: this.#files.map(plain), notice };
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const message = { renderer: this.#renderer, size, theme: this.theme(), calm, text, files: this.#files.map(plain), notice };
     if ("transferControlToOffscreen" in canvas && workersDraw()) {
       const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module", name: "limn engine" });
       this.engine = worker;
@@ -127,6 +130,7 @@ export class Supervisor {
     if (message.type === "state" && !message.busy) {
       this.#reading = false;
       this.#settled = message.text;
+      this.#origin = message.origin;
       if (this.#coming && message.model?.reload === "file") this.#files = this.#coming;
       this.#coming = null;
       if (performance.now() - this.#since > HEALTHY) this.#attempt = 0;
@@ -149,9 +153,8 @@ export class Supervisor {
     console.warn(`limn: the engine is replaced: ${why}`);
     if (performance.now() - this.#since > HEALTHY) this.#attempt = 0;
     this.#attempt += 1;
-    const source = this.#settled.split(/[;\n]/).filter((line) => /^#?\d*$|^\s*open\b/.test(line)).join(";");
     if (this.#attempt === 1) this.#replace(this.#settled || location.hash, why);
-    else if (this.#attempt === 2) this.#replace(source || "#1", why);
+    else if (this.#attempt === 2) this.#replace(this.#origin, why);
     else if (this.#attempt === 3) {
       this.#files = [];
       this.#replace("", why);

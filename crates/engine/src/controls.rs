@@ -1,0 +1,268 @@
+//! The rows of the panel: one table, in which each choice is a command.
+//!
+//! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
+
+use std::collections::BTreeMap;
+
+use limn_document::{Document, ViewSet};
+use limn_mesh::{Boundary, Weld};
+use serde::Serialize;
+
+/// A row.
+#[derive(Debug, Serialize)]
+pub struct Control {
+    /// Names it in [`values`].
+    pub id: &'static str,
+    /// `view` or `surface`.
+    pub tab: &'static str,
+    /// What stands before it.
+    pub label: &'static str,
+    /// One sentence.
+    pub help: &'static str,
+    /// `choice`, `switch` (off and on) or `actions` (nothing is chosen).
+    pub kind: &'static str,
+    /// Its buttons.
+    pub choices: &'static [Choice],
+}
+
+/// A button.
+#[derive(Debug, Serialize)]
+pub struct Choice {
+    /// As in [`values`].
+    pub value: &'static str,
+    /// On the button.
+    pub label: &'static str,
+    /// What it sends.
+    pub command: &'static str,
+}
+
+const fn choice(value: &'static str, label: &'static str, command: &'static str) -> Choice {
+    Choice { value, label, command }
+}
+
+macro_rules! switch {
+    ($tab:literal, $id:literal, $command:literal, $label:literal, $help:literal) => {
+        Control {
+            id: $id,
+            tab: $tab,
+            label: $label,
+            help: $help,
+            kind: "switch",
+            choices: &[choice("off", "Off", concat!($command, "off")), choice("on", "On", concat!($command, "on"))],
+        }
+    };
+}
+
+/// Every row, in the order of the panel.
+pub static CONTROLS: &[Control] = &[
+    Control {
+        id: "shading",
+        tab: "view",
+        label: "Shading",
+        help: "How light falls on the faces: over the edges, or a face at a time",
+        kind: "choice",
+        choices: &[choice("smooth", "Smooth", "view shading=smooth"), choice("flat", "Flat", "view shading=flat")],
+    },
+    Control {
+        id: "edges",
+        tab: "view",
+        label: "Edges",
+        help: "Polygon edges; by level draws the edges of the level before bold and new ones faint",
+        kind: "choice",
+        choices: &[
+            choice("off", "Off", "view edges=off"),
+            choice("on", "All", "view edges=on"),
+            choice("bold", "By level", "view edges=bold"),
+            choice("only", "Only", "view edges=only"),
+        ],
+    },
+    switch!("view", "cage", "view cage=", "Cage", "The model itself as lines over its surface"),
+    switch!("view", "points", "view points=", "Points", "The vertices as dots"),
+    switch!("view", "two-sided", "view two-sided=", "Light both sides", "Light the backs of faces like their fronts"),
+    switch!("view", "textures", "view textures=", "Textures", "Pictures on the surface, where the file has them"),
+    switch!("view", "colors", "view colors=", "Vertex colours", "Colours at the vertices, where the file has them"),
+    Control {
+        id: "camera",
+        tab: "view",
+        label: "Look from",
+        help: "Where the viewer stands; Fit keeps the direction",
+        kind: "actions",
+        choices: &[
+            choice("home", "Home", "view camera=home"),
+            choice("fit", "Fit", "view camera=fit"),
+            choice("front", "Front", "view camera=front"),
+            choice("back", "Back", "view camera=back"),
+            choice("left", "Left", "view camera=left"),
+            choice("right", "Right", "view camera=right"),
+            choice("top", "Top", "view camera=top"),
+            choice("bottom", "Bottom", "view camera=bottom"),
+            choice("iso", "Isometric", "view camera=iso"),
+        ],
+    },
+    Control {
+        id: "projection",
+        tab: "view",
+        label: "Projection",
+        help: "Perspective, or parallel lines that stay parallel",
+        kind: "choice",
+        choices: &[
+            choice("perspective", "Perspective", "view projection=perspective"),
+            choice("orthographic", "Orthographic", "view projection=orthographic"),
+        ],
+    },
+    Control {
+        id: "up",
+        tab: "view",
+        label: "Up axis",
+        help: "Which of the model's axes points up",
+        kind: "choice",
+        choices: &[choice("y", "Y", "view up=y"), choice("z", "Z", "view up=z")],
+    },
+    Control {
+        id: "background",
+        tab: "view",
+        label: "Background",
+        help: "What is behind the model; Clear makes pictures transparent there",
+        kind: "choice",
+        choices: &[
+            choice("theme", "Theme", "view background=theme"),
+            choice("light", "Light", "view background=light"),
+            choice("dark", "Dark", "view background=dark"),
+            choice("ffffff", "White", "view background=ffffff"),
+            choice("transparent", "Clear", "view background=transparent"),
+        ],
+    },
+    Control {
+        id: "boundary",
+        tab: "surface",
+        label: "Open rims",
+        help: "The rim of an open model is smoothed; its corners can stay or be smoothed too",
+        kind: "choice",
+        choices: &[
+            choice("edge-and-corner", "Sharp corners", "boundary edge-and-corner"),
+            choice("edge-only", "Smooth corners", "boundary edge-only"),
+        ],
+    },
+    Control {
+        id: "weld",
+        tab: "surface",
+        label: "Join vertices",
+        help: "Which vertices of the file are one: those in the same place, those that are nearly, or none",
+        kind: "choice",
+        choices: &[
+            choice("off", "Never", "weld off"),
+            choice("exact", "Same place", "weld exact"),
+            choice("near", "Nearly", "weld 0.00001"),
+        ],
+    },
+    switch!("surface", "quads", "quads ", "Pair triangles to quads", "Put quads together that were cut into triangles"),
+    Control {
+        id: "model",
+        tab: "surface",
+        label: "Model",
+        help: "Changes of the model itself",
+        kind: "actions",
+        choices: &[
+            choice("triangulate", "Triangulate", "triangulate"),
+            choice("center", "Centre", "center"),
+            choice("scale", "Scale to 1", "scale"),
+        ],
+    },
+];
+
+/// The chosen value of each row.
+pub fn values(document: &Document) -> BTreeMap<&'static str, String> {
+    let view = document.view();
+    let on = |on: bool| (if on { "on" } else { "off" }).to_owned();
+    let mut values: BTreeMap<&'static str, String> = [
+        ViewSet::Shading(view.shading),
+        ViewSet::Edges(view.edges),
+        ViewSet::Points(view.points),
+        ViewSet::Cage(view.cage),
+        ViewSet::TwoSided(view.two_sided),
+        ViewSet::Textures(view.textures),
+        ViewSet::Colors(view.colors),
+        ViewSet::Background(view.background),
+        ViewSet::Up(view.camera.up),
+        ViewSet::Projection(view.camera.projection),
+    ]
+    .iter()
+    .map(|set| (set.key(), set.value()))
+    .collect();
+    if let Some((quads, weld)) = document.reading() {
+        values.insert("quads", on(quads));
+        let weld = match weld {
+            Weld::Off => "off",
+            Weld::Exact => "exact",
+            Weld::Relative(_) => "near",
+        };
+        values.insert("weld", weld.to_owned());
+    }
+    if let Some(plan) = document.plan() {
+        let rule = match plan.boundary {
+            Boundary::EdgeOnly => "edge-only",
+            Boundary::EdgeAndCorner => "edge-and-corner",
+        };
+        values.insert("boundary", rule.to_owned());
+    }
+    values
+}
+
+/// The rows that make no difference to this model. `open` says whether it has a rim.
+pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
+    let mut rows = Vec::new();
+    let (Some(model), Some(mesh)) = (document.model(), document.mesh()) else { return rows };
+    if model.images.is_empty() {
+        rows.push("textures");
+    }
+    if mesh.colors.is_empty() {
+        rows.push("colors");
+    }
+    if !open {
+        rows.push("boundary");
+    }
+    let paired = document.reading().is_some_and(|(quads, _)| quads);
+    let triangles = model.soup.offsets.windows(2).any(|w| matches!(w, &[a, b] if b - a == 3));
+    if !paired && !triangles {
+        rows.push("quads");
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_choice_is_a_command_that_chooses_it() {
+        let mut document = Document::new(1 << 30);
+        document.run("open builtin:pawn").unwrap();
+        for control in CONTROLS {
+            for choice in control.choices {
+                document.run(choice.command).unwrap_or_else(|e| panic!("{}: {e}", choice.command));
+                if control.kind != "actions" {
+                    assert_eq!(values(&document)[control.id], choice.value, "{}", choice.command);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rows_that_make_no_difference_are_off() {
+        let mut document = Document::new(1 << 30);
+        document.run("open builtin:cube").unwrap();
+        assert_eq!(disabled(&document, false), ["textures", "colors", "boundary", "quads"]);
+        document.run("open builtin:pawn").unwrap();
+        assert_eq!(disabled(&document, true), ["textures", "colors"]);
+    }
+
+    #[test]
+    fn the_view_s_defaults_are_among_the_choices() {
+        let document = Document::new(1 << 30);
+        let values = values(&document);
+        for control in CONTROLS.iter().filter(|c| c.tab == "view" && c.kind != "actions") {
+            let value = &values[control.id];
+            assert!(control.choices.iter().any(|c| c.value == value), "{} {value}", control.id);
+        }
+    }
+}

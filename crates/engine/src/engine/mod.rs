@@ -1,0 +1,433 @@
+//! The engine: one object that `web/host.js` owns and calls.
+//!
+//! Every call does what it can at once, marks what became stale ([`Dirty`]), and leaves the rest to `work` and `frame`,
+//! which the host calls as long as `has_work` and `wants_frame` say so. A command changes the document at once; `sync`
+//! compares what is wanted with what is shown and with what is being made.
+
+mod open;
+mod show;
+mod work;
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use js_sys::Uint8Array;
+use limn_document::camera::Camera;
+use limn_document::command::{COMMANDS, Command};
+use limn_document::{Bounds, CommandError, Document, Outcome};
+use limn_mesh::{Mesh, SCHEMES, SHAPES};
+use limn_render::{Gpu, Renderer, Screen, Tier};
+use wasm_bindgen::prelude::*;
+
+use crate::gestures::{Gestures, Viewport};
+use crate::making::{Made, Making, Parts};
+use crate::pick::pick;
+use crate::post::{Clock, Post};
+use crate::protocol::{Card, CommandInfo, Hello, Message, ModelInfo, SchemeInfo, Times};
+use crate::report::Facts;
+use crate::shorthand::{self, Short};
+use crate::{controls, keys};
+
+/// The memory that refining may take for each gigabyte that the device has, in bytes; browsers say 8 at most.
+const BUDGET_A_GIGABYTE: f64 = 96e6;
+/// The number of milliseconds that a camera takes from one named view to another.
+const TWEEN: f64 = 240.0;
+
+/// What became stale.
+#[derive(Clone, Copy, Default)]
+struct Dirty {
+    /// The picture.
+    picture: bool,
+    /// The state message.
+    state: bool,
+    /// The state message, but for the camera alone: it can wait a moment.
+    camera: bool,
+}
+
+/// A camera on its way.
+struct Tween {
+    from: Camera,
+    to: Camera,
+    start: f64,
+}
+
+/// What the facts, parts and cage on the GPU were made of.
+struct Known {
+    mesh: Arc<Mesh>,
+    facts: Facts,
+    parts: Arc<Parts>,
+}
+
+/// The engine. See the module's text, and [`crate::protocol`] for what it posts.
+#[wasm_bindgen]
+pub struct Engine {
+    post: Post,
+    clock: Clock,
+    renderer: Renderer,
+    screen: Screen,
+    document: Document,
+    gestures: Gestures,
+    viewport: Viewport,
+    pixel_ratio: f32,
+    dark: bool,
+    calm: bool,
+    dirty: Dirty,
+    tween: Option<Tween>,
+    opening: Option<open::Opening>,
+    /// Counts what was asked of the surroundings: late answers are told by it.
+    turn: u32,
+    known: Option<Known>,
+    making: Option<Making>,
+    shown: Option<Made>,
+    /// The model whose materials and pictures are on the GPU.
+    painted: Option<Arc<limn_formats::Model>>,
+    /// The mesh whose cage is on the GPU, and the level whose points are.
+    caged: Option<Arc<Mesh>>,
+    dotted: Option<Arc<limn_mesh::Refined>>,
+    /// A file to write once the level is there.
+    export: Option<String>,
+    times: Times,
+    /// When the work that is going on began, when its progress was last told, and when a state was last posted.
+    since: f64,
+    told: Option<f64>,
+    posted: f64,
+}
+
+#[wasm_bindgen]
+impl Engine {
+    /// Opens a device on the canvas (an `OffscreenCanvas` or an `HTMLCanvasElement`) and says hello. `theme` is `dark` or
+    /// `light`, `calm` asks for no motion, `memory` is the device's in gigabytes, `emit` takes the messages.
+    #[allow(clippy::too_many_arguments)]
+    pub async fn create(
+        canvas: JsValue,
+        renderer: String,
+        width: u32,
+        height: u32,
+        pixel_ratio: f32,
+        insets: Vec<f32>,
+        theme: String,
+        calm: bool,
+        memory: f64,
+        emit: js_sys::Function,
+    ) -> Result<Engine, JsValue> {
+        let post = Post::new(emit);
+        let tier = if renderer == "webgpu" { Tier::WebGpu } else { Tier::WebGl2 };
+        let target = match canvas.dyn_into::<web_sys::OffscreenCanvas>() {
+            Ok(canvas) => wgpu::SurfaceTarget::OffscreenCanvas(canvas),
+            Err(canvas) => wgpu::SurfaceTarget::Canvas(canvas.dyn_into::<web_sys::HtmlCanvasElement>()?),
+        };
+        let instance = Gpu::instance(tier);
+        let text = |e: &dyn std::fmt::Display| JsValue::from(e.to_string());
+        let surface = instance.create_surface(target).map_err(|e| text(&e))?;
+        let gpu = Gpu::new(&instance, Some(&surface), tier).await.map_err(|e| text(&e))?;
+        let screen = Screen::new(&gpu, surface, width, height).map_err(|e| text(&e))?;
+        let adapter = gpu.describe();
+        let renderer = Renderer::new(gpu, screen.format());
+        let budget = (memory.clamp(1.0, 8.0) * BUDGET_A_GIGABYTE) as u64;
+        let mut engine = Engine {
+            clock: Clock::new(),
+            renderer,
+            screen,
+            document: Document::new(budget),
+            gestures: Gestures::default(),
+            viewport: Viewport::new(Vec2::ONE, [0.0; 4]),
+            pixel_ratio: 1.0,
+            dark: theme == "dark",
+            calm,
+            dirty: Dirty::default(),
+            tween: None,
+            opening: None,
+            turn: 0,
+            known: None,
+            making: None,
+            shown: None,
+            painted: None,
+            caged: None,
+            dotted: None,
+            export: None,
+            times: Times::default(),
+            since: 0.0,
+            told: None,
+            posted: 0.0,
+            post,
+        };
+        engine.measure(width, height, pixel_ratio, &insets);
+        engine.post.send(&Hello {
+            renderer: if tier == Tier::WebGpu { "webgpu" } else { "webgl2" },
+            adapter,
+            version: env!("CARGO_PKG_VERSION"),
+            schemes: SCHEMES
+                .iter()
+                .map(|e| &e.info)
+                .map(|i| SchemeInfo {
+                    id: i.id,
+                    name: i.name,
+                    group: i.group,
+                    summary: i.summary,
+                    command: format!("scheme {}", i.id),
+                })
+                .collect(),
+            models: SHAPES.iter().map(|s| ModelInfo { name: s.name, summary: s.summary }).collect(),
+            controls: controls::CONTROLS,
+            keys: keys::keys(),
+            commands: COMMANDS
+                .iter()
+                .map(|s| CommandInfo {
+                    name: s.name,
+                    args: s.usage().split_once(' ').map_or(String::new(), |(_, args)| args.to_owned()),
+                    help: s.summary.to_owned(),
+                    class: s.class.name(),
+                })
+                .collect(),
+        });
+        Ok(engine)
+    }
+
+    /// Replays a link's fragment or a document's text; an empty one is a first visit. Files are those that it may name.
+    /// `notice` says why the engine was replaced, if it was.
+    pub fn replay(&mut self, text: &str, notice: String, names: Vec<String>, bytes: Vec<Uint8Array>) {
+        if !notice.is_empty() {
+            self.card(Card {
+                id: "fault",
+                kind: "error",
+                title: "Limn had to start again".into(),
+                lines: vec![notice],
+                ..Card::default()
+            });
+        }
+        self.start(text, open::gather(names, bytes));
+    }
+
+    /// Opens the dropped or chosen files, or with `again` reads the present model's anew.
+    pub fn open(&mut self, names: Vec<String>, bytes: Vec<Uint8Array>, again: bool) {
+        self.progress_over();
+        self.open_files(open::gather(names, bytes), again);
+        self.dirty.state = true;
+    }
+
+    /// Runs a command line, or shorthand. `echo` always answers in the log; `drag` is a setting that may change again at
+    /// once, as on a slider.
+    pub fn command(&mut self, text: &str, echo: bool, drag: bool) {
+        let expanded;
+        let text = match shorthand::expand(text, &self.document) {
+            Some(Short::Command(command)) => {
+                expanded = command;
+                &expanded
+            }
+            Some(Short::Turn(degrees)) => {
+                let (bounds, aspect) = (self.bounds(), self.document.aspect());
+                let mut camera = self.aim();
+                camera.orbit(Vec2::new(-degrees.x, degrees.y) / 180.0);
+                return self.go(camera, bounds, aspect);
+            }
+            Some(Short::Zoom(factor)) => {
+                let (bounds, aspect) = (self.bounds(), self.document.aspect());
+                let mut camera = self.aim();
+                camera.dolly(factor, Vec2::ZERO, aspect, &bounds);
+                return self.go(camera, bounds, aspect);
+            }
+            None => text,
+        };
+        let camera = self.document.view().camera;
+        let result = if drag { self.document.drag(text) } else { self.document.run(text) };
+        match result {
+            Ok(outcome) => self.carry_out(text, outcome, camera, echo || !drag),
+            Err(error) => self.refuse(text, &error),
+        }
+        self.dirty.state = true;
+    }
+
+    /// Takes a frame's pointer and wheel events; see [`crate::gestures`].
+    pub fn input(&mut self, batch: &[f32]) {
+        let (bounds, viewport) = (self.bounds(), self.viewport);
+        self.finish_tween();
+        let effect = self.gestures.apply(batch, &viewport, &mut self.document.view_mut().camera, &bounds);
+        if effect.moved {
+            self.dirty.picture = true;
+            self.dirty.camera = true;
+        }
+        if let (Some(pointer), Some(made)) = (effect.pivot, &self.shown) {
+            let mut camera = self.document.view().camera;
+            let ray = camera.ray(pointer, viewport.aspect());
+            let hidden = self.hidden_groups();
+            let visible = |f: u32| {
+                let group = made.parts.group(made.refined.face_source(f));
+                !hidden.get(group as usize).copied().unwrap_or(false)
+            };
+            if let Some(point) = pick(&made.refined, &ray, visible) {
+                camera.set_pivot(point);
+                self.go(camera, bounds, viewport.aspect());
+            }
+        }
+    }
+
+    /// The canvas has another size (device pixels), or the page covers other parts of it (CSS pixels).
+    pub fn resize(&mut self, width: u32, height: u32, pixel_ratio: f32, insets: &[f32]) {
+        if self.screen.size() != [width, height] {
+            self.screen.resize(self.renderer.gpu(), width, height);
+        }
+        self.measure(width, height, pixel_ratio, insets);
+        self.dirty.picture = true;
+        self.dirty.camera = true;
+    }
+
+    /// The page is dark or light now.
+    pub fn theme(&mut self, theme: &str) {
+        self.dark = theme == "dark";
+        self.dirty.picture = true;
+    }
+
+    /// Stops what is going on. The document goes back to what is shown.
+    pub fn cancel(&mut self) {
+        self.stop_opening();
+        self.stop_making();
+        self.progress_over();
+        self.dirty.state = true;
+    }
+
+    /// Whether `work` has something to do.
+    pub fn has_work(&self) -> bool {
+        self.making.is_some()
+    }
+
+    /// Works for about so many milliseconds.
+    pub fn work(&mut self, milliseconds: f64) {
+        self.advance(self.clock.now() + milliseconds);
+    }
+
+    /// Whether `frame` has something to do.
+    pub fn wants_frame(&self) -> bool {
+        self.dirty.picture || self.dirty.state || self.dirty.camera || self.tween.is_some()
+    }
+
+    /// Draws and posts the state, each if it is stale. True if a model was drawn.
+    pub fn frame(&mut self) -> bool {
+        self.show_frame()
+    }
+
+    /// The surroundings read an address: its bytes, or why not.
+    pub fn fetched(&mut self, url: &str, turn: u32, bytes: Option<Vec<u8>>, error: &str) {
+        self.progress_over();
+        self.take_download(url, turn, bytes, error);
+        self.dirty.state = true;
+    }
+
+    /// The surroundings decoded a picture; none if it could not be.
+    pub fn decoded(&mut self, turn: u32, index: u32, bitmap: Option<web_sys::ImageBitmap>) {
+        self.take_picture(turn, index, bitmap);
+    }
+}
+
+impl Engine {
+    fn card(&self, card: Card) {
+        self.post.send(&Message::Card { card });
+    }
+
+    fn no_card(&self, id: &'static str) {
+        self.card(Card { id, ..Card::default() });
+    }
+
+    fn log(&self, command: &str, text: String, ok: bool) {
+        self.post.send(&Message::Log { command: command.to_owned(), text, ok });
+    }
+
+    fn refuse(&self, command: &str, error: &CommandError) {
+        let text = error.to_string();
+        let mut chars = text.chars();
+        let text = chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or(text);
+        self.log(command, text, false);
+    }
+
+    /// What a command asks of the host.
+    fn carry_out(&mut self, text: &str, outcome: Outcome, camera: Camera, log: bool) {
+        let mut answer = String::new();
+        match outcome {
+            Outcome::Nothing => {}
+            Outcome::View => {
+                let to = self.document.view().camera;
+                if to != camera && self.tween.is_none() {
+                    let (bounds, aspect) = (self.bounds(), self.document.aspect());
+                    self.document.view_mut().camera = camera;
+                    self.go(to, bounds, aspect);
+                } else {
+                    self.tween = None;
+                }
+                self.sync();
+            }
+            Outcome::Refine => self.sync(),
+            Outcome::Model => {
+                self.tween = None;
+                self.sync();
+                self.report_card();
+            }
+            Outcome::Open(source) => self.fetch_source(source),
+            Outcome::Export { file } => self.start_export(file),
+            Outcome::Info { json } => {
+                let points = self.shown.as_ref().filter(|_| self.making.is_none()).map(|m| &m.refined.points[..]);
+                answer = self
+                    .document
+                    .info(points)
+                    .map_or(String::new(), |info| if json { info.json() } else { info.text() });
+            }
+            Outcome::Help(text) => answer = text,
+        }
+        if log {
+            self.log(text, answer.trim_end().to_owned(), true);
+        }
+    }
+
+    /// Where the camera is or is on its way to.
+    fn aim(&self) -> Camera {
+        self.tween.as_ref().map_or(self.document.view().camera, |t| t.to)
+    }
+
+    /// Moves the camera there, smoothly unless motion is unwelcome.
+    fn go(&mut self, to: Camera, bounds: Bounds, aspect: f32) {
+        let from = self.document.view().camera;
+        if self.calm || self.shown.is_none() || from.projection != to.projection || from.up != to.up {
+            self.tween = None;
+            self.document.view_mut().camera = to;
+        } else {
+            self.tween = Some(Tween { from, to, start: self.clock.now() });
+        }
+        // Named views are framed for the viewport that there is.
+        let _ = (bounds, aspect);
+        self.dirty.picture = true;
+        self.dirty.state = true;
+    }
+
+    /// Puts the camera where it was going.
+    fn finish_tween(&mut self) {
+        if let Some(tween) = self.tween.take() {
+            self.document.view_mut().camera = tween.to;
+            self.dirty.picture = true;
+            self.dirty.camera = true;
+        }
+    }
+
+    /// The box of what is to be seen: the model, or the unit box.
+    fn bounds(&self) -> Bounds {
+        self.document.bounds()
+    }
+
+    fn measure(&mut self, width: u32, height: u32, pixel_ratio: f32, insets: &[f32]) {
+        self.pixel_ratio = if pixel_ratio.is_finite() { pixel_ratio.clamp(0.25, 8.0) } else { 1.0 };
+        let inset = |i: usize| insets.get(i).copied().unwrap_or(0.0);
+        let size = Vec2::new(width as f32, height as f32) / self.pixel_ratio;
+        self.viewport = Viewport::new(size, [inset(0), inset(1), inset(2), inset(3)]);
+        self.finish_tween();
+        self.document.set_aspect(self.viewport.aspect());
+    }
+
+    /// Which of the model's groups are not drawn, by number.
+    fn hidden_groups(&self) -> Vec<bool> {
+        let view = self.document.view();
+        let groups = self.document.model().map_or(&[][..], |m| &m.groups);
+        if view.hidden.is_empty() { Vec::new() } else { groups.iter().map(|g| view.hides(g)).collect() }
+    }
+
+    /// Whether a command line opens something, for logs.
+    fn is_open(command: &Command) -> bool {
+        matches!(command, Command::Open(_))
+    }
+}

@@ -1,0 +1,404 @@
+//! Opening: from files, addresses and links to a document.
+//!
+//! ```text
+//!   drop ──► main file ──► read ──► load ──► sync
+//!   link ──► new document ──► replay until a source ──► builtin: goes on at once
+//!                                                       address: fetch ──► read, load, replay the rest
+//!                                                       file: a card asks for it, the rest waits
+//! ```
+//!
+//! A link is replayed into a document of its own, which takes the place of the present one only when all of it worked: the
+//! last good model stays on the screen.
+
+use std::sync::Arc;
+
+use js_sys::Uint8Array;
+use limn_document::command::{Command, parse_script};
+use limn_document::{Document, Outcome, Replayed, Source, Stamp};
+use limn_formats::{Limits, read};
+use wasm_bindgen::JsValue;
+
+use super::Engine;
+use crate::protocol::{Card, Message};
+
+/// What a first visit shows.
+const FIRST: &str = "#1;open+builtin:creature;scheme+catmull-clark;level+2";
+/// Bytes that reading may build, in multiples of the refinement budget.
+const READ_SHARE: u64 = 1;
+/// The endings of files that are models, the most telling first.
+const MODELS: [&str; 3] = [".gltf", ".glb", ".obj"];
+
+/// Files by name.
+pub(super) type Files = Vec<(String, Vec<u8>)>;
+
+/// Copies the page's files into the engine's memory.
+pub(super) fn gather(names: Vec<String>, bytes: Vec<Uint8Array>) -> Files {
+    names.into_iter().zip(bytes).map(|(name, bytes)| (name, bytes.to_vec())).collect()
+}
+
+/// A source that is on its way.
+pub(super) struct Opening {
+    source: Source,
+    /// The document that it is for; none if it is for the present one.
+    document: Option<Document>,
+    /// Commands of a link that come after it.
+    rest: Vec<Command>,
+    /// What the surroundings were asked with.
+    turn: u32,
+}
+
+/// The file that the others belong to.
+fn main_file(files: &Files) -> Option<usize> {
+    let rank = |name: &str| {
+        let name = name.to_ascii_lowercase();
+        MODELS.iter().position(|m| name.ends_with(m)).unwrap_or(MODELS.len())
+    };
+    let side = |name: &str| {
+        let name = name.to_ascii_lowercase();
+        [".mtl", ".bin", ".png", ".jpg", ".jpeg", ".webp", ".txt", ".md"].iter().any(|s| name.ends_with(s))
+    };
+    (0..files.len()).min_by_key(|&i| {
+        let name = files.get(i).map_or("", |f| &f.0);
+        // Models before others, shallow folders before deep ones, then by name.
+        (rank(name), side(name), name.matches('/').count(), name.to_owned())
+    })
+}
+
+impl Engine {
+    /// Begins with a link, a document's text, or the first visit's model.
+    pub(super) fn start(&mut self, text: &str, files: Files) {
+        let text = text.trim();
+        let commands = match text {
+            "" | "#" => Document::from_link(FIRST).map_err(|e| e.to_string()),
+            t if t.starts_with("version") || t.starts_with("open") => parse_script(t).map_err(|e| e.to_string()),
+            t => Document::from_link(t).map_err(|e| e.to_string()),
+        };
+        self.stop_opening();
+        match commands {
+            Ok(commands) => self.replay_into_new(commands, files),
+            Err(error) => self.bad_link(&error),
+        }
+        if self.document.mesh().is_none() {
+            // Never an empty page: something to look at stands behind the card, or until the file comes.
+            let _ = Document::from_link(FIRST).map(|commands| self.document.replay(&commands));
+            self.sync();
+        }
+        self.dirty.state = true;
+    }
+
+    fn bad_link(&mut self, error: &str) {
+        let lines =
+            vec![sentence(error), "The address was left as it is, so that it can be compared with its source.".into()];
+        self.card(Card {
+            id: "link",
+            kind: "error",
+            title: "This link cannot be read".into(),
+            lines,
+            ..Card::default()
+        });
+    }
+
+    fn replay_into_new(&mut self, commands: Vec<Command>, files: Files) {
+        let mut document = Document::new(self.document.budget());
+        document.set_aspect(self.viewport.aspect());
+        self.go_on(document, &commands, files);
+    }
+
+    /// Replays commands into a document that is not shown yet, as far as they go.
+    fn go_on(&mut self, mut document: Document, commands: &[Command], files: Files) {
+        let mut files = Some(files);
+        let mut commands = commands.to_vec();
+        loop {
+            match document.replay(&commands) {
+                Err(error) => return self.bad_link(&error.to_string()),
+                Ok(Replayed::Done) => {
+                    self.document = document;
+                    self.opening = None;
+                    self.tween = None;
+                    self.no_card("link");
+                    self.no_card("ask");
+                    self.sync();
+                    return self.report_card();
+                }
+                Ok(Replayed::Waiting { source, rest }) => {
+                    if let Source::File { name, .. } = &source
+                        && let Some(list) = &files
+                        && let Some(at) = list.iter().position(|(n, _)| n == name)
+                        && let Some(list) = files.take()
+                    {
+                        if !self.read_into(&mut document, list, at, &source) {
+                            return;
+                        }
+                        commands = rest;
+                        continue;
+                    }
+                    self.turn += 1;
+                    let opening = Opening { source: source.clone(), document: Some(document), rest, turn: self.turn };
+                    self.opening = Some(opening);
+                    return self.ask(&source);
+                }
+            }
+        }
+    }
+
+    /// Asks the surroundings, or the visitor, for a source.
+    fn ask(&mut self, source: &Source) {
+        match source {
+            Source::Builtin(_) => {}
+            Source::Url(url) => {
+                self.since = self.clock.now();
+                self.told = Some(self.since);
+                let what = format!("Reading {}", source.name());
+                self.post.send(&Message::Progress { what, done: -1.0, cancel: true });
+                self.post.send(&Message::Fetch { url: url.clone(), turn: self.turn });
+            }
+            Source::File { stamp, .. } => {
+                let name = source.name().to_owned();
+                let mut lines = vec!["A link names a file but does not hold it. Drop it here, with the files that belong to it, or open it.".to_owned()];
+                if let Some(stamp) = stamp {
+                    lines.push(format!("It has {} bytes.", limn_mesh::refine::grouped(stamp.size)));
+                }
+                let title = format!("This link shows {name}");
+                self.card(Card { id: "ask", kind: "note", title, lines, ask: name });
+            }
+        }
+    }
+
+    /// A command asked for a source.
+    pub(super) fn fetch_source(&mut self, source: Source) {
+        self.stop_opening_quietly();
+        self.turn += 1;
+        self.opening = Some(Opening { source: source.clone(), document: None, rest: Vec::new(), turn: self.turn });
+        self.ask(&source);
+    }
+
+    /// Files were dropped or chosen.
+    pub(super) fn open_files(&mut self, files: Files, again: bool) {
+        if again {
+            return self.reload(files);
+        }
+        let Some(main) = main_file(&files) else { return };
+        let name = files.get(main).map_or(String::new(), |f| f.0.clone());
+        // The file that a link waits for?
+        if let Some(opening) = self.opening.take() {
+            let wanted = match &opening.source {
+                Source::File { name: wanted, .. } => {
+                    let last = |n: &str| n.rsplit(['/', '\\']).next().unwrap_or(n).to_ascii_lowercase();
+                    files.iter().position(|(n, _)| last(n) == last(wanted))
+                }
+                _ => None,
+            };
+            match (wanted, opening.document) {
+                (Some(at), Some(mut document)) => {
+                    if self.read_into(&mut document, files, at, &opening.source) {
+                        self.go_on(document, &opening.rest, Vec::new());
+                    }
+                    return;
+                }
+                (Some(_), None) | (None, None) => self.document.cancel_open(),
+                (None, Some(_)) => {}
+            }
+            self.no_card("ask");
+        }
+        let source = Source::File { name, stamp: None };
+        match self.document.apply(&Command::Open(source.clone()), false) {
+            Ok(_) => {
+                let mut document = std::mem::replace(&mut self.document, Document::new(0));
+                let good = self.read_into(&mut document, files, main, &source);
+                self.document = document;
+                if good {
+                    self.loaded(&source);
+                }
+            }
+            Err(error) => self.refuse("open", &error),
+        }
+    }
+
+    fn loaded(&mut self, source: &Source) {
+        self.log(&format!("open {}", limn_document::words::quote(&source.to_string())), String::new(), true);
+        self.no_card("link");
+        self.tween = None;
+        self.sync();
+        self.report_card();
+    }
+
+    fn reload(&mut self, files: Files) {
+        match self.document.apply(&Command::Reload, false) {
+            Ok(Outcome::Open(source @ Source::File { .. })) => {
+                let name = source.name().to_owned();
+                let last = |n: &str| n.rsplit(['/', '\\']).next().unwrap_or(n).to_owned();
+                let Some(at) = files.iter().position(|(n, _)| last(n) == name).or_else(|| main_file(&files)) else {
+                    self.document.cancel_open();
+                    let lines = vec!["Open it or drop it again.".to_owned()];
+                    let title = format!("{name} cannot be read again");
+                    return self.card(Card { id: "read", kind: "error", title, lines, ask: name });
+                };
+                let mut document = std::mem::replace(&mut self.document, Document::new(0));
+                let good = self.read_into(&mut document, files, at, &source);
+                self.document = document;
+                if good {
+                    self.loaded(&source);
+                }
+            }
+            Ok(Outcome::Open(source)) => self.fetch_source(source),
+            Ok(_) => {}
+            Err(error) => self.refuse("reload", &error),
+        }
+    }
+
+    /// Reads file `at` of `files` and loads it as the source that `document` waits for. A card says what is wrong if it
+    /// cannot.
+    fn read_into(&mut self, document: &mut Document, mut files: Files, at: usize, asked: &Source) -> bool {
+        if at >= files.len() {
+            return false;
+        }
+        let start = self.clock.now();
+        let (name, bytes) = files.swap_remove(at);
+        let stamp = Some(Stamp::of(&bytes));
+        let source = match asked {
+            Source::Url(_) => asked.clone(),
+            _ => Source::File { name: name.clone(), stamp },
+        };
+        let limits = Limits { bytes: Limits::default().bytes.min(document.budget().saturating_mul(READ_SHARE)) };
+        let title = |name: &str| format!("{} could not be opened", name.rsplit('/').next().unwrap_or(name));
+        let (model, warnings) = match read(&name, &bytes, &files, &limits) {
+            Ok(read) => read,
+            Err(error) => {
+                document.cancel_open();
+                let lines = vec![sentence(&error.to_string())];
+                self.card(Card { id: "read", kind: "error", title: title(&name), lines, ..Card::default() });
+                return false;
+            }
+        };
+        drop((bytes, files));
+        match document.load(source, model, &warnings) {
+            Ok(_) => {
+                self.times.read = self.clock.now() - start;
+                self.no_card("read");
+                self.no_card("ask");
+                true
+            }
+            Err(error) => {
+                document.cancel_open();
+                let lines = vec![sentence(&error.to_string())];
+                self.card(Card { id: "read", kind: "error", title: title(&name), lines, ..Card::default() });
+                false
+            }
+        }
+    }
+
+    /// What came from an address.
+    pub(super) fn take_download(&mut self, url: &str, turn: u32, bytes: Option<Vec<u8>>, error: &str) {
+        let Some(opening) = self.opening.take_if(|o| o.turn == turn) else { return };
+        let Some(bytes) = bytes else {
+            if opening.document.is_none() {
+                self.document.cancel_open();
+            }
+            let title = format!("{} could not be opened", opening.source.name());
+            let lines = vec![format!("{url}: {error}.")];
+            return self.card(Card { id: "read", kind: "error", title, lines, ..Card::default() });
+        };
+        let files = vec![(opening.source.name().to_owned(), bytes)];
+        match opening.document {
+            Some(mut document) => {
+                if self.read_into(&mut document, files, 0, &opening.source) {
+                    self.go_on(document, &opening.rest, Vec::new());
+                }
+            }
+            None => {
+                let mut document = std::mem::replace(&mut self.document, Document::new(0));
+                let good = self.read_into(&mut document, files, 0, &opening.source);
+                self.document = document;
+                if good {
+                    self.loaded(&opening.source);
+                }
+            }
+        }
+    }
+
+    /// Forgets a source that is on its way, and the card that asks for it.
+    pub(super) fn stop_opening(&mut self) {
+        self.stop_opening_quietly();
+        self.no_card("ask");
+    }
+
+    fn stop_opening_quietly(&mut self) {
+        if let Some(opening) = self.opening.take()
+            && opening.document.is_none()
+        {
+            self.document.cancel_open();
+        }
+    }
+
+    /// A card with what reading found, where that is worth a look.
+    pub(super) fn report_card(&self) {
+        const MOST: usize = 4;
+        let remarks = self.document.remarks();
+        let worth: Vec<&String> = remarks.iter().filter(|r| !r.minor).map(|r| &r.text).collect();
+        if worth.is_empty() {
+            return self.no_card("report");
+        }
+        let name = self.document.source().map_or("", Source::name);
+        let mut lines: Vec<String> = worth.iter().take(MOST).map(|t| (*t).clone()).collect();
+        if worth.len() > MOST {
+            lines.push(format!("{} more are in the report.", worth.len() - MOST));
+        }
+        let title = format!("{name}: {} {}", worth.len(), if worth.len() == 1 { "note" } else { "notes" });
+        self.card(Card { id: "report", kind: "note", title, lines, ..Card::default() });
+    }
+
+    /// Puts the model's materials on the GPU and has its pictures decoded.
+    pub(super) fn paint(&mut self) {
+        let Some(model) = self.document.model().cloned() else { return };
+        if self.painted.as_ref().is_some_and(|p| Arc::ptr_eq(p, &model)) {
+            return;
+        }
+        self.turn += 1;
+        // No textures: always accepted.
+        let _ = self.renderer.set_textures(&[]);
+        let materials: Vec<_> = model
+            .materials
+            .iter()
+            .map(|m| limn_render::Material { base_color: m.base_color, texture: m.texture })
+            .collect();
+        self.renderer.set_materials(&materials);
+        for (index, image) in model.images.iter().enumerate() {
+            let fields = [
+                ("index", JsValue::from(index as u32)),
+                ("mime", JsValue::from(&image.mime)),
+                ("turn", JsValue::from(self.turn)),
+            ];
+            self.post.bytes("decode", &fields, &image.bytes);
+        }
+        self.painted = Some(model);
+    }
+
+    /// A picture came back.
+    pub(super) fn take_picture(&mut self, turn: u32, index: u32, bitmap: Option<web_sys::ImageBitmap>) {
+        // Nothing else counts turns between paint and its answers but a newer paint, or an address that is fetched.
+        let Some(model) = self.painted.clone().filter(|_| turn <= self.turn) else { return };
+        let Some(image) = model.images.get(index as usize) else { return };
+        let result = match bitmap {
+            Some(bitmap) => self
+                .renderer
+                .set_texture_external(index as usize, wgpu::ExternalImageSource::ImageBitmap(bitmap))
+                .map_err(|e| e.to_string()),
+            None => Err("the browser cannot decode it".to_owned()),
+        };
+        if let Err(error) = result {
+            let title = format!("The picture {} is not shown", image.name);
+            self.card(Card { id: "picture", kind: "note", title, lines: vec![sentence(&error)], ..Card::default() });
+        }
+        self.dirty.picture = true;
+    }
+}
+
+/// With a capital and a full stop.
+pub(super) fn sentence(text: &str) -> String {
+    let mut chars = text.chars();
+    let mut out: String = chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or_default();
+    if !out.ends_with(['.', '!', '?']) {
+        out.push('.');
+    }
+    out
+}

@@ -1,0 +1,299 @@
+//! What goes out: frames, the state message, and files.
+
+use glam::{Mat4, Vec2, Vec3};
+use limn_document::Source;
+use limn_document::camera::{Bounds, UpAxis};
+use limn_document::view::{Background, Edges, Shading};
+use limn_render::{Camera, Frame, Style};
+use wasm_bindgen::JsValue;
+
+use super::open::sentence;
+use super::{Engine, TWEEN};
+use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
+use crate::{controls, report};
+
+/// The page's grounds, top and bottom, as web/base.css has them.
+const DARK: [[f32; 3]; 2] = [[0.118, 0.129, 0.149], [0.067, 0.071, 0.082]];
+const LIGHT: [[f32; 3]; 2] = [[0.973, 0.969, 0.957], [0.894, 0.886, 0.867]];
+/// State messages that tell of the camera alone are at least so many milliseconds apart.
+const CAMERA_PAUSE: f64 = 200.0;
+
+impl Engine {
+    pub(super) fn show_frame(&mut self) -> bool {
+        let now = self.clock.now();
+        if let Some(tween) = &self.tween {
+            let t = ((now - tween.start) / TWEEN).clamp(0.0, 1.0) as f32;
+            // Slow at both ends.
+            let camera = tween.from.blend(&tween.to, t * t * (3.0 - 2.0 * t));
+            self.document.view_mut().camera = camera;
+            self.dirty.picture = true;
+            if t >= 1.0 {
+                self.finish_tween();
+                self.dirty.state = true;
+            }
+        }
+        // A model that is not there yet is looked at with its own camera: until it is, the last picture stays.
+        let stale = self.making.is_some()
+            && match (&self.shown, self.document.mesh()) {
+                (Some(made), Some(_)) => self.document.model().is_some_and(|m| {
+                    self.painted.as_ref().is_some_and(|p| !std::sync::Arc::ptr_eq(p, m)) && made.bytes() > 0
+                }),
+                _ => true,
+            };
+        let mut drawn = false;
+        if self.dirty.picture && !stale {
+            self.dirty.picture = false;
+            drawn = self.draw() && self.shown.is_some();
+            let errors = self.renderer.gpu().take_errors();
+            if let Some(first) = errors.first() {
+                self.trouble(first);
+            }
+        } else if stale {
+            self.dirty.picture = false;
+        }
+        let camera_due = self.dirty.camera && now - self.posted > CAMERA_PAUSE && self.tween.is_none();
+        if self.dirty.state || camera_due {
+            self.dirty.state = false;
+            self.dirty.camera = false;
+            self.posted = now;
+            let state = self.state();
+            self.post.send(&state);
+        }
+        drawn
+    }
+
+    fn draw(&mut self) -> bool {
+        let start = self.clock.now();
+        let Some(frame) = self.screen.acquire(self.renderer.gpu()) else { return false };
+        let hidden = self.hidden_groups();
+        let picture = self.picture(&hidden);
+        let result = self.renderer.draw(&frame.view, frame.size, &picture);
+        self.screen.present(self.renderer.gpu(), frame);
+        self.times.draw = self.clock.now() - start;
+        match result {
+            Ok(()) => true,
+            Err(limn_render::Error::Lost(why)) => {
+                let message = format!("the graphics device was lost ({why})");
+                self.post.send(&crate::protocol::Message::Fault { message, kind: "trap" });
+                false
+            }
+            Err(error) => {
+                self.trouble(&error.to_string());
+                false
+            }
+        }
+    }
+
+    /// Camera and style of the present view.
+    fn picture<'a>(&self, hidden_groups: &'a [bool]) -> Frame<'a> {
+        let view = self.document.view();
+        let mut style = if self.dark { Style::dark() } else { Style::light() };
+        let ground = |[top, bottom]: [[f32; 3]; 2]| limn_render::Background::Gradient(top, bottom);
+        style.background = match view.background {
+            Background::Theme => ground(if self.dark { DARK } else { LIGHT }),
+            Background::Dark => ground(DARK),
+            Background::Light => ground(LIGHT),
+            Background::Color(rgb) => limn_render::Background::Solid(rgb.map(|c| f32::from(c) / 255.0)),
+            Background::Transparent => limn_render::Background::Transparent,
+        };
+        style.shading = match view.shading {
+            Shading::Smooth => limn_render::Shading::Smooth,
+            Shading::Flat => limn_render::Shading::Flat,
+        };
+        style.edges = match view.edges {
+            Edges::Off => limn_render::Edges::Off,
+            Edges::On => limn_render::Edges::On,
+            Edges::Bold => limn_render::Edges::Bold,
+            Edges::Only => limn_render::Edges::Wire,
+        };
+        style.points = view.points;
+        style.cage = view.cage;
+        style.two_sided = view.two_sided;
+        style.textures = view.textures;
+        style.colors = view.colors;
+        // The near and far planes hold what is shown: the surface, and the cage around it.
+        let mut bounds = self.document.bounds();
+        if let Some(surface) = self.renderer.surface().map(limn_render::Surface::bounds).filter(|b| !b.is_empty()) {
+            bounds =
+                Bounds { min: bounds.min.min(Vec3::from(surface.min)), max: bounds.max.max(Vec3::from(surface.max)) };
+        }
+        let camera = &view.camera;
+        let (near, far) = camera.clip_range(&bounds);
+        let (scale, offset) = self.viewport.to_canvas();
+        let proj = shift(scale, offset) * camera.projection_matrix(self.viewport.aspect(), near, far);
+        let up = match camera.up {
+            UpAxis::Y => Vec3::Y,
+            UpAxis::Z => Vec3::Z,
+        };
+        Frame { camera: Camera { view: camera.view(), proj, up }, style, pixel_ratio: self.pixel_ratio, hidden_groups }
+    }
+
+    /// The whole view model.
+    fn state(&self) -> State {
+        let document = &self.document;
+        let plan = document.plan();
+        let source = document.source();
+        let facts = self.known.as_ref().map(|k| &k.facts);
+        let model = source.zip(facts).map(|(source, facts)| ModelState {
+            name: source.name().to_owned(),
+            summary: facts.summary(),
+            builtin: matches!(source, Source::Builtin(_)),
+            reload: match source {
+                Source::Builtin(_) => "",
+                Source::File { .. } => "file",
+                Source::Url(_) => "url",
+            },
+            facts: facts.rows(document),
+        });
+        let shown = self.shown.as_ref().map_or_else(Shown::default, |made| {
+            let c = made.refined.counts;
+            let gpu = self.renderer.surface().map_or(0, limn_render::Surface::bytes);
+            let count = Count { vertices: c.vertices, edges: c.edges, faces: c.faces, bytes: made.bytes() + gpu };
+            Shown { count, level: made.plan.level, scheme: made.plan.scheme.info.id }
+        });
+        let stem = document.model().map_or("model", |m| m.name.as_str());
+        let stem = plan.filter(|p| p.level > 0).map_or(stem.to_owned(), |p| format!("{stem}-{}", p.level));
+        let file = |ending: &str| format!("export {}", limn_document::words::quote(&format!("{stem}.{ending}")));
+        let (undo, redo) = document.undo_depth();
+        let lines = document.commands().into_iter().filter(Engine::is_open).map(|c| c.to_string());
+        State {
+            model,
+            scheme: plan.map_or("", |p| p.scheme.info.id),
+            level: plan.map_or(0, |p| p.level),
+            levels: report::ruler(document),
+            shown,
+            times: self.times,
+            busy: self.making.is_some() || self.told.is_some() || self.tween.is_some(),
+            values: controls::values(document),
+            disabled: controls::disabled(document, facts.is_some_and(|f| f.stats.boundary_loops > 0)),
+            groups: self.groups(),
+            report: document
+                .remarks()
+                .into_iter()
+                .map(|r| Remark { text: r.text, kind: if r.minor { "note" } else { "warning" } })
+                .collect(),
+            exports: vec![
+                ExportChoice { label: "OBJ", help: "Polygons of this level, in full precision", command: file("obj") },
+                ExportChoice { label: "GLB", help: "glTF for programs that draw", command: file("glb") },
+                ExportChoice { label: "PNG", help: "A picture of this view", command: file("png") },
+            ],
+            undo: (undo > 0).then(String::new),
+            redo: (redo > 0).then(String::new),
+            text: document.text(),
+            origin: lines.collect(),
+            link: document.link(),
+            link_note: match source {
+                Some(Source::File { .. }) => {
+                    format!(
+                        "Link copied. It names {} but does not hold it: whoever opens it is asked for the file",
+                        source.map_or("", Source::name)
+                    )
+                }
+                _ => String::new(),
+            },
+        }
+    }
+
+    fn groups(&self) -> Vec<Group> {
+        let (Some(model), view) = (self.document.model(), self.document.view()) else { return Vec::new() };
+        if model.groups.len() < 2 {
+            return Vec::new();
+        }
+        let mut faces = vec![0u64; model.groups.len()];
+        for &group in &model.soup.face_groups {
+            if let Some(count) = faces.get_mut(group as usize) {
+                *count += 1;
+            }
+        }
+        model
+            .groups
+            .iter()
+            .zip(faces)
+            .map(|(name, faces)| {
+                let hidden = view.hides(name);
+                let mut names: Vec<String> = view.hidden.iter().filter(|n| *n != name).cloned().collect();
+                if !hidden {
+                    names.push(name.clone());
+                    names.sort();
+                }
+                let set = limn_document::ViewSet::Hide(names);
+                let command = format!("view {}", limn_document::words::quote(&set.to_string()));
+                Group { name: name.clone(), faces, hidden, command }
+            })
+            .collect()
+    }
+
+    /// Writes a file now, or when the level that is being made is there.
+    pub(super) fn start_export(&mut self, file: String) {
+        if self.making.is_some() {
+            self.export = Some(file);
+        } else {
+            self.write(&file);
+        }
+    }
+
+    pub(super) fn write(&mut self, file: &str) {
+        let png = file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case("png"));
+        if png {
+            return self.write_picture(file);
+        }
+        let Some(made) = &self.shown else { return };
+        match self.document.export(&made.refined, file) {
+            Ok(files) => {
+                for out in files {
+                    let ending = out.name.rsplit_once('.').map_or("", |(_, e)| e).to_ascii_lowercase();
+                    let mime = match ending.as_str() {
+                        "obj" => "model/obj",
+                        "mtl" => "model/mtl",
+                        "glb" => "model/gltf-binary",
+                        "png" => "image/png",
+                        "jpg" | "jpeg" => "image/jpeg",
+                        _ => "application/octet-stream",
+                    };
+                    let fields = [("name", JsValue::from(&out.name)), ("mime", JsValue::from(mime))];
+                    self.post.bytes("file", &fields, &out.bytes);
+                }
+            }
+            Err(error) => self.log(
+                &format!("export {file}"),
+                sentence(&error.to_string()).replace(".obj or .glb", ".obj, .glb or .png"),
+                false,
+            ),
+        }
+    }
+
+    fn write_picture(&mut self, file: &str) {
+        self.finish_tween();
+        let hidden = self.hidden_groups();
+        let picture = self.picture(&hidden);
+        let [width, height] = self.screen.size();
+        match self.renderer.image(&picture, width, height) {
+            Ok(pixels) => {
+                let (post, name) = (self.post.clone(), file.to_owned());
+                wasm_bindgen_futures::spawn_local(async move {
+                    match pixels.await {
+                        Ok(pixels) => {
+                            let fields = [
+                                ("name", JsValue::from(&name)),
+                                ("width", JsValue::from(width)),
+                                ("height", JsValue::from(height)),
+                            ];
+                            post.bytes("png", &fields, &pixels);
+                        }
+                        Err(error) => post.send(&crate::protocol::Message::Log {
+                            command: format!("export {name}"),
+                            text: sentence(&error.to_string()),
+                            ok: false,
+                        }),
+                    }
+                });
+            }
+            Err(error) => self.trouble(&error.to_string()),
+        }
+    }
+}
+
+/// Takes clip coordinates of the free part of the canvas to those of all of it.
+fn shift(scale: Vec2, offset: Vec2) -> Mat4 {
+    Mat4::from_translation(offset.extend(0.0)) * Mat4::from_scale(scale.extend(1.0))
+}

@@ -1,0 +1,186 @@
+//! The work behind the picture: is what is shown what is wanted, and if not, making it.
+
+use std::sync::Arc;
+
+use limn_document::view::Shading;
+use limn_mesh::{Connectivity, Mesh};
+
+use super::open::sentence;
+use super::{Engine, Known};
+use crate::making::{MOST_FLAT, Making, Parts, Step};
+use crate::protocol::{Card, Message};
+use crate::report::Facts;
+
+/// Work shorter than this, in milliseconds, is not talked about.
+const QUIET: f64 = 200.0;
+/// The pause between two progress messages.
+const PAUSE: f64 = 80.0;
+
+impl Engine {
+    /// Starts or drops work until what is being made, or else what is shown, is what the document wants.
+    pub(super) fn sync(&mut self) {
+        self.dirty.picture = true;
+        self.dirty.state = true;
+        let (Some(mesh), Some(plan)) = (self.document.mesh().cloned(), self.document.plan()) else { return };
+        if self.known.as_ref().is_none_or(|k| !Arc::ptr_eq(&k.mesh, &mesh)) {
+            let (facts, parts) = (Facts::of(&mesh), Arc::new(Parts::of(&self.document)));
+            self.known = Some(Known { mesh: mesh.clone(), facts, parts });
+        }
+        let Some(known) = &self.known else { return };
+        let faces = self.document.predict(plan.level).map_or(0, |p| p.counts.faces);
+        let corners = self.document.view().shading == Shading::Flat && faces <= MOST_FLAT;
+        let shown = self.shown.as_ref().filter(|m| m.is(&mesh, plan, corners));
+        if shown.is_some() {
+            self.making = None;
+            self.progress_over();
+            self.overlays();
+            return;
+        }
+        if self.making.as_ref().is_some_and(|m| m.is(&mesh, plan, corners)) {
+            return;
+        }
+        let making = match &self.shown {
+            Some(made) if made.is(&mesh, plan, !corners) => Ok(Making::again(made, corners)),
+            _ => Making::refine(mesh, plan, corners, known.parts.clone(), self.document.budget()),
+        };
+        match making {
+            Ok(making) => {
+                if self.making.is_none() {
+                    self.since = self.clock.now();
+                }
+                self.making = Some(making);
+            }
+            Err(error) => self.cannot_show(&error.to_string()),
+        }
+    }
+
+    fn cannot_show(&mut self, why: &str) {
+        self.making = None;
+        self.progress_over();
+        let title = "This level cannot be shown".to_owned();
+        self.card(Card { id: "draw", kind: "error", title, lines: vec![sentence(why)], ..Card::default() });
+        self.go_back();
+    }
+
+    /// Works until `deadline`.
+    pub(super) fn advance(&mut self, deadline: f64) {
+        let Some(mut making) = self.making.take() else { return };
+        let clock = self.clock.clone();
+        loop {
+            match making.step(&self.renderer, || clock.now(), deadline) {
+                Ok(Step::Done(made, surface)) => {
+                    self.times.refine = making.spent[0];
+                    self.times.build = making.spent[1];
+                    self.renderer.show(Some(surface));
+                    self.shown = Some(made);
+                    self.paint();
+                    self.overlays();
+                    self.progress_over();
+                    self.dirty.picture = true;
+                    self.dirty.state = true;
+                    if let Some(file) = self.export.take() {
+                        self.write(&file);
+                    }
+                    return;
+                }
+                Ok(Step::More) if clock.now() < deadline => {}
+                Ok(Step::More) => break,
+                Err(error) => return self.cannot_show(&error.to_string()),
+            }
+        }
+        let now = clock.now();
+        if now - self.since > QUIET && self.told.is_none_or(|t| now - t > PAUSE) {
+            self.told = Some(now);
+            let what = format!("Refining to level {}", making.level());
+            self.post.send(&Message::Progress { what, done: making.progress(), cancel: true });
+            self.dirty.state = true;
+        }
+        self.making = Some(making);
+    }
+
+    /// Takes the progress line away.
+    pub(super) fn progress_over(&mut self) {
+        if self.told.take().is_some() {
+            self.post.send(&Message::Progress { what: String::new(), done: 0.0, cancel: false });
+        }
+    }
+
+    /// Drops the work that is going on and makes the document what is shown again.
+    pub(super) fn stop_making(&mut self) {
+        self.export = None;
+        if self.making.take().is_some() {
+            self.go_back();
+        }
+    }
+
+    /// Goes back to the scheme and level that are shown; where they belong to another model, to that model.
+    fn go_back(&mut self) {
+        let Some(shown) = self.shown.clone() else {
+            // Nothing was ever shown: the model itself is the least there is.
+            let _ = self.document.run("level 0");
+            return self.sync();
+        };
+        let fits = |engine: &Engine| {
+            engine.document.mesh().is_some_and(|m| Arc::ptr_eq(m, shown.refined.mesh()))
+                && engine.document.plan().is_some_and(|p| p == shown.plan)
+        };
+        let rule = match shown.plan.boundary {
+            limn_mesh::Boundary::EdgeOnly => "edge-only",
+            limn_mesh::Boundary::EdgeAndCorner => "edge-and-corner",
+        };
+        // The level comes down first: the other settings could not be paid for at the one that was too much.
+        let level = format!("level {}", shown.plan.level);
+        for command in
+            [level.clone(), format!("scheme {}", shown.plan.scheme.info.id), format!("boundary {rule}"), level]
+        {
+            let _ = self.document.run(&command);
+        }
+        if !fits(self) {
+            while !fits(self) && self.document.run("undo").is_ok() {}
+        }
+        if !fits(self) {
+            let _ = self.document.run("level 0");
+        }
+        self.sync();
+    }
+
+    /// Brings cage and points to the GPU where the view shows them.
+    fn overlays(&mut self) {
+        let view = self.document.view();
+        let (cage, points) = (view.cage, view.points);
+        if let (true, Some(mesh)) = (cage, self.document.mesh().cloned())
+            && self.caged.as_ref().is_none_or(|c| !Arc::ptr_eq(c, &mesh))
+        {
+            match self.renderer.set_cage(&mesh.positions, &edges(&mesh)) {
+                Ok(()) => self.caged = Some(mesh),
+                Err(error) => self.trouble(&error.to_string()),
+            }
+        }
+        if let (true, Some(made)) = (points, &self.shown)
+            && self.dotted.as_ref().is_none_or(|d| !Arc::ptr_eq(d, &made.refined))
+        {
+            let refined = made.refined.clone();
+            match self.renderer.set_points(&refined.points) {
+                Ok(()) => self.dotted = Some(refined),
+                Err(error) => self.trouble(&error.to_string()),
+            }
+        }
+    }
+
+    /// A card about drawing that went wrong; the picture stays as good as it is.
+    pub(super) fn trouble(&self, error: &str) {
+        let title = "Something could not be drawn".to_owned();
+        self.card(Card { id: "draw", kind: "error", title, lines: vec![sentence(error)], ..Card::default() });
+    }
+}
+
+/// Every edge once, by its two vertices.
+fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
+    let t = &mesh.topology;
+    (0..t.edges())
+        .map(|e| {
+            let h = t.edge_half_edge(e);
+            [t.origin(h), t.origin(t.next(h))]
+        })
+        .collect()
+}

@@ -1,0 +1,300 @@
+//! What the page and the engine say to each other.
+//!
+//! Page and engine share no memory: the page sends plain messages, `web/host.js` turns each into one call of
+//! `Engine`, and the engine posts the messages below. `web/protocol.d.ts` has the same shapes for the page's type
+//! checker. The page never computes from a [`State`]; it shows it and sends the command texts that it finds there.
+//!
+//! ```text
+//!   page -> engine                                      engine -> page
+//!   start   canvas, size, theme, text, files            hello     once: schemes, models, controls, keys, commands
+//!   open    files: they replace the model               state     the whole view model, at most once a frame
+//!   reload  the same files, read again                  progress  work longer than 200 ms; empty when it is over
+//!   replay  a link's fragment                           card      a quiet message that stays until dismissed
+//!   cmd     one command's text                          log       a console line's answer
+//!   input   pointer and wheel events of one frame       file      an export's bytes
+//!   size    device pixels, what the page covers         drawn     the first picture is on the canvas
+//!   theme, cancel, ping                                 pong, fault
+//! ```
+//!
+//! To its surroundings (`web/host.js`) the engine also says `fetch` (an address), `decode` (a picture's bytes) and `png`
+//! (pixels to be saved): things that only the browser can do, answered by `Engine`'s `fetched` and `decoded`, or by the
+//! page getting a file. A `turn` number in them tells
+//! late answers from current ones.
+//!
+//! A batch of input is a row of numbers for each event: kind, pointer, x, y, a, b, modifiers, time. See
+//! [`crate::gestures`] for what they mean.
+
+use serde::Serialize;
+
+/// Sent once, when the engine takes commands.
+#[derive(Serialize)]
+#[serde(tag = "type", rename = "hello", rename_all = "camelCase")]
+pub struct Hello {
+    /// `webgpu` or `webgl2`.
+    pub renderer: &'static str,
+    /// The graphics adapter, for people.
+    pub adapter: String,
+    /// Of this program.
+    pub version: &'static str,
+    /// The registry of schemes.
+    pub schemes: Vec<SchemeInfo>,
+    /// Built-in models.
+    pub models: Vec<ModelInfo>,
+    /// Rows of the panel.
+    pub controls: &'static [crate::controls::Control],
+    /// The keyboard.
+    pub keys: Vec<crate::keys::Key>,
+    /// The console's commands.
+    pub commands: Vec<CommandInfo>,
+}
+
+/// A scheme's pill.
+#[derive(Serialize)]
+pub struct SchemeInfo {
+    /// Permanent id.
+    pub id: &'static str,
+    /// What people read.
+    pub name: &'static str,
+    /// Pills of a group stand together.
+    pub group: &'static str,
+    /// One sentence.
+    pub summary: &'static str,
+    /// What the pill sends.
+    pub command: String,
+}
+
+/// A built-in model.
+#[derive(Serialize)]
+pub struct ModelInfo {
+    /// `open builtin:NAME` opens it.
+    pub name: &'static str,
+    /// One sentence.
+    pub summary: &'static str,
+}
+
+/// A command, for help and completion.
+#[derive(Serialize)]
+pub struct CommandInfo {
+    /// Its first word.
+    pub name: &'static str,
+    /// What follows the name in the usage line.
+    pub args: String,
+    /// One sentence.
+    pub help: String,
+    /// `model`, `setting`, `view` or `action`.
+    pub class: &'static str,
+}
+
+/// Counts and bytes of a level.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Count {
+    /// Vertices.
+    pub vertices: u64,
+    /// Edges.
+    pub edges: u64,
+    /// Faces.
+    pub faces: u64,
+    /// Bytes in memory: for a level of the ruler at the peak of refining it, for what is shown in memory and on the GPU.
+    pub bytes: u64,
+}
+
+/// A notch of the ruler.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Level {
+    /// Which.
+    pub level: u32,
+    /// What stands under the notch.
+    pub label: String,
+    /// What it makes, predicted.
+    #[serde(flatten)]
+    pub count: Count,
+    /// Whether it fits the budget.
+    pub allowed: bool,
+    /// The counts as a sentence, or why it does not fit.
+    pub title: String,
+    /// What the notch sends.
+    pub command: String,
+}
+
+/// A group of faces that can be hidden.
+#[derive(Serialize)]
+pub struct Group {
+    /// As the file has it.
+    pub name: String,
+    /// How many faces of the file.
+    pub faces: u64,
+    /// Whether it is not drawn.
+    pub hidden: bool,
+    /// What shows or hides it.
+    pub command: String,
+}
+
+/// What is known about the model.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ModelState {
+    /// File or shape.
+    pub name: String,
+    /// One line under the name.
+    pub summary: String,
+    /// Whether it is one of the built-in ones.
+    pub builtin: bool,
+    /// `file` or `url` if Reload can read it again, else empty.
+    pub reload: &'static str,
+    /// Rows of the report.
+    pub facts: Vec<Fact>,
+}
+
+/// A row of the report.
+#[derive(Clone, Serialize)]
+pub struct Fact {
+    /// What.
+    pub label: &'static str,
+    /// How much.
+    pub value: String,
+}
+
+/// What is on the screen.
+#[derive(Clone, Default, Serialize)]
+pub struct Shown {
+    /// Counts, and the bytes that it takes.
+    #[serde(flatten)]
+    pub count: Count,
+    /// Its level.
+    pub level: u32,
+    /// Its scheme.
+    pub scheme: &'static str,
+}
+
+/// Milliseconds of the last time each was done.
+#[derive(Clone, Copy, Default, Serialize)]
+pub struct Times {
+    /// Reading the file and connecting its faces.
+    pub read: f64,
+    /// From the mesh to the level's points and faces.
+    pub refine: f64,
+    /// Normals and buffers.
+    pub build: f64,
+    /// Recording one frame.
+    pub draw: f64,
+}
+
+/// A line of the report.
+#[derive(Clone, Serialize)]
+pub struct Remark {
+    /// One sentence.
+    pub text: String,
+    /// `note` or `warning`.
+    pub kind: &'static str,
+}
+
+/// A way to save.
+#[derive(Serialize)]
+pub struct ExportChoice {
+    /// On the button.
+    pub label: &'static str,
+    /// What it is good for.
+    pub help: &'static str,
+    /// What the button sends.
+    pub command: String,
+}
+
+/// The whole view model.
+#[derive(Serialize)]
+#[serde(tag = "type", rename = "state", rename_all = "camelCase")]
+pub struct State {
+    /// None until a model has been read.
+    pub model: Option<ModelState>,
+    /// The chosen scheme.
+    pub scheme: &'static str,
+    /// The chosen level.
+    pub level: u32,
+    /// The ruler.
+    pub levels: Vec<Level>,
+    /// What is on the screen, which lags behind what is chosen while work goes on.
+    pub shown: Shown,
+    /// How long things took.
+    pub times: Times,
+    /// Whether work goes on.
+    pub busy: bool,
+    /// The chosen value of each control.
+    pub values: std::collections::BTreeMap<&'static str, String>,
+    /// Controls that do not apply.
+    pub disabled: Vec<&'static str>,
+    /// Groups of the model.
+    pub groups: Vec<Group>,
+    /// What reading and connecting found.
+    pub report: Vec<Remark>,
+    /// Ways to save.
+    pub exports: Vec<ExportChoice>,
+    /// What undo would take back; none if nothing.
+    pub undo: Option<String>,
+    /// What redo would do again.
+    pub redo: Option<String>,
+    /// The document, to be replayed.
+    pub text: String,
+    /// The part of `text` that opens the model.
+    pub origin: String,
+    /// The document as a fragment, with its `#`.
+    pub link: String,
+    /// What the receiver of the link will miss.
+    pub link_note: String,
+}
+
+/// A message that stays until it is dismissed, or replaced by one with its id; one without title and lines goes away.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Card {
+    /// What it is about: `read`, `link`, `report`, `ask`, `fault`, `draw`.
+    pub id: &'static str,
+    /// `error` or `note`.
+    pub kind: &'static str,
+    /// One line.
+    pub title: String,
+    /// Sentences.
+    pub lines: Vec<String>,
+    /// The file that an open button asks for, or empty.
+    pub ask: String,
+}
+
+/// All other messages, to the page and to the surroundings.
+#[derive(Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+pub enum Message {
+    /// Work longer than 200 ms.
+    Progress {
+        /// What is being done; empty when it is over.
+        what: String,
+        /// 0 to 1, or negative if unknown.
+        done: f32,
+        /// Whether Cancel helps.
+        cancel: bool,
+    },
+    /// A quiet message.
+    Card {
+        /// The card.
+        card: Card,
+    },
+    /// An answer in the console.
+    Log {
+        /// What was asked.
+        command: String,
+        /// The answer; may be empty.
+        text: String,
+        /// Whether it worked.
+        ok: bool,
+    },
+    /// The engine can do no more.
+    Fault {
+        /// Why.
+        message: String,
+        /// `trap` or `renderer`.
+        kind: &'static str,
+    },
+    /// To the surroundings: read an address and call `fetched`.
+    Fetch {
+        /// The address.
+        url: String,
+        /// To be given back.
+        turn: u32,
+    },
+}
