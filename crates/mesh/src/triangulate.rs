@@ -135,6 +135,11 @@ fn distance2(a: [f64; 3], b: [f64; 3]) -> f64 {
     dot(d, d)
 }
 
+fn size2(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = [b[0] - a[0], b[1] - a[1]];
+    x * x + y * y
+}
+
 /// Twice the polygon's area vector, summed from its first corner so that a far-away polygon loses no digits.
 fn newell(points: &[[f64; 3]]) -> [f64; 3] {
     let mut sum = [0.0; 3];
@@ -280,9 +285,7 @@ impl<'a> Clipper<'a> {
     fn is_convex(&self, i: u32) -> bool {
         let (a, c) = (self.prev[i as usize], self.next[i as usize]);
         let [p, q, r] = [a, i, c].map(|i| self.flat[i as usize]);
-        let before = (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2);
-        let after = (r[0] - q[0]).powi(2) + (r[1] - q[1]).powi(2);
-        self.area(a, i, c) > STRAIGHT * (before * after).sqrt()
+        self.area(a, i, c) > STRAIGHT * (size2(p, q) * size2(q, r)).sqrt()
     }
 
     /// True if the rule lets the angle at `i` be an ear's.
@@ -313,7 +316,7 @@ impl<'a> Clipper<'a> {
         let low = [pa[0].min(pb[0]).min(pc[0]), pa[1].min(pb[1]).min(pc[1])];
         let high = [pa[0].max(pb[0]).max(pc[0]), pa[1].max(pb[1]).max(pc[1])];
         // On the border counts as inside at first, so that no triangle or remainder comes out flat.
-        let epsilon = 1e-9 * ((high[0] - low[0]).powi(2) + (high[1] - low[1]).powi(2));
+        let epsilon = 1e-9 * size2(low, high);
         let floor = if self.rule == Rule::Strict { -epsilon } else { epsilon };
         let from = self.sorted.partition_point(|&i| self.flat[i as usize][0] < low[0]);
         for &i in &self.sorted[from..] {
@@ -362,11 +365,10 @@ fn flatten(points: &[[f64; 3]]) -> Vec<[f64; 2]> {
         }
     }
     let extent = sub(high, low);
-    let size2 = dot(extent, extent);
     let mut normal = newell(points);
     // A polygon without an area vector (a line, a figure of eight) is looked at across its thinnest side.
     let length = dot(normal, normal).sqrt();
-    if length.is_nan() || length <= 1e-14 * size2 {
+    if length.is_nan() || length <= 1e-14 * dot(extent, extent) {
         normal = [0.0; 3];
         normal[smallest(extent)] = 1.0;
     }

@@ -225,6 +225,32 @@ fn the_mouse_gives_the_papers_counts() {
 }
 
 #[test]
+fn the_creature_stands_and_looks_ahead() {
+    let soup = build("creature");
+    let low = |k: usize| soup.positions.iter().map(|p| p[k]).fold(f32::INFINITY, f32::min);
+    let high = |k: usize| soup.positions.iter().map(|p| p[k]).fold(f32::NEG_INFINITY, f32::max);
+    // Four feet on the ground: vertices at y = 0 on either side, in front and behind.
+    assert_eq!(low(1), 0.0);
+    for (x, z) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        assert!(soup.positions.iter().any(|p| p[1] < 0.001 && p[0] * x > 0.1 && p[2] * z > 0.1), "{x} {z}");
+    }
+    // The head is high and in front, the tail behind.
+    let top = soup.positions.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+    assert!(top[1] > 1.3 && top[2] > 0.3, "{top:?}");
+    assert!(high(2) > 1.0 && low(2) < -1.0);
+    // Corners of 3 to 6 edges, nearly all of 4.
+    let mut edges = vec![0; soup.positions.len()];
+    soup.corners.iter().for_each(|&v| edges[v as usize] += 1);
+    assert!(edges.iter().all(|n| (3..=6).contains(n)));
+    assert!(edges.iter().filter(|&&n| n == 4).count() > 1200);
+    // No edge is so short that welding by distance could take it.
+    for (a, b) in undirected_edges(&soup).into_keys() {
+        let [p, q] = [a, b].map(|v| soup.positions[v as usize]);
+        assert!((0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f32>() > 1e-6, "{a} {b}");
+    }
+}
+
+#[test]
 fn unknown_names_are_unknown() {
     assert!(shape("Cube").is_none() && shape("").is_none());
 }

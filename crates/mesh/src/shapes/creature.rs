@@ -30,12 +30,13 @@ type Section = [f64; 5];
 /// The tube from the tail's tip to the nose. The rings stand across the line through their middles.
 const TUBE: [Section; 22] = [
     // Tail.
-    [0.76, -1.61, 0.02, 0.02, 0.02],
-    [0.58, -1.58, 0.06, 0.06, 0.06],
-    [0.42, -1.44, 0.10, 0.095, 0.095],
-    [0.36, -1.22, 0.14, 0.13, 0.12],
-    [0.40, -0.99, 0.19, 0.17, 0.17],
-    [0.49, -0.78, 0.27, 0.23, 0.23],
+    [0.76, -1.66, 0.02, 0.02, 0.02],
+    [0.60, -1.65, 0.055, 0.055, 0.055],
+    [0.45, -1.55, 0.09, 0.085, 0.085],
+    [0.36, -1.38, 0.12, 0.115, 0.11],
+    [0.34, -1.18, 0.155, 0.145, 0.14],
+    [0.39, -0.97, 0.205, 0.185, 0.18],
+    [0.48, -0.77, 0.275, 0.235, 0.235],
     // Body.
     [0.57, -0.58, 0.36, 0.30, 0.29],
     [0.62, -0.36, 0.43, 0.36, 0.36],
@@ -51,10 +52,9 @@ const TUBE: [Section; 22] = [
     [1.35, 0.63, 0.24, 0.26, 0.18],
     [1.48, 0.73, 0.34, 0.33, 0.26],
     [1.50, 0.91, 0.355, 0.31, 0.29],
-    [1.43, 1.06, 0.30, 0.20, 0.235],
-    [1.395, 1.15, 0.265, 0.155, 0.20],
-    [1.38, 1.235, 0.23, 0.13, 0.17],
-    [1.375, 1.30, 0.16, 0.09, 0.115],
+    [1.42, 1.07, 0.295, 0.19, 0.235],
+    [1.385, 1.19, 0.25, 0.145, 0.19],
+    [1.375, 1.29, 0.175, 0.10, 0.13],
 ];
 
 /// A ring of a leg: its middle, out from the body's middle plane, up and forward; radius across and along; how much higher
@@ -79,13 +79,13 @@ const FORE_LEG: [LegRing; 5] = [
 ];
 
 /// Bands of the tube that carry a plate of the crest, and how high it is.
-const CREST: [(usize, f64); 7] = [(2, 0.10), (4, 0.14), (6, 0.17), (8, 0.19), (10, 0.17), (12, 0.13), (14, 0.10)];
+const CREST: [(usize, f64); 7] = [(3, 0.10), (5, 0.14), (7, 0.17), (9, 0.19), (11, 0.17), (13, 0.13), (15, 0.10)];
 
 /// The creature: 1,452 vertices, 2,900 edges, 1,450 quads, closed.
 pub fn creature() -> Soup {
     let mut cage = tube();
     let mut feet = Vec::new();
-    for (band, leg) in [(6, &HIND_LEG), (9, &FORE_LEG)] {
+    for (band, leg) in [(7, &HIND_LEG), (10, &FORE_LEG)] {
         for right in [true, false] {
             feet.push(pull_leg(&mut cage, band, leg, right));
         }
@@ -96,7 +96,7 @@ pub fn creature() -> Soup {
         cage.pull(&[face], 0.3, [lift[0], lift[1], lift[2] - 0.35 * height]);
     }
     for (side, sign) in [(0, 1.0), (6, -1.0)] {
-        let face = side_face(15, side);
+        let face = side_face(16, side);
         cage.pull(&[face], 0.5, [0.05 * sign, 0.10, -0.08]);
         cage.pull(&[face], 0.4, [0.02 * sign, 0.10, -0.16]);
     }
@@ -104,7 +104,7 @@ pub fn creature() -> Soup {
     let mut cage = cage.refined();
     // Child `c` of face `f` is face `4 f + c`, at its corner `c`.
     for side in [0, 6] {
-        let face = side_face(16, side);
+        let face = side_face(17, side);
         pull_eye(&mut cage, &[4 * face, 4 * face + 1, 4 * face + 2, 4 * face + 3]);
     }
     for foot in feet {
