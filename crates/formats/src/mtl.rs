@@ -93,13 +93,13 @@ impl<'f> MaterialTable<'f> {
     }
 
     fn setting(&mut self, cur: &mut Cursor<'_>, keyword: &[u8], line: u64, entry: &mut Entry) {
-        let mut number = |cur: &mut Cursor<'_>| match cur.float() {
-            Ok(value) => Some(value),
-            Err(_) => {
-                self.warnings
-                    .add(WarningKind::MaterialBroken, 1, || Some(format!("first on line {line} of the material file")));
-                None
+        let mut number = |cur: &mut Cursor<'_>| {
+            let value = cur.double().ok();
+            if value.is_none() {
+                let place = || Some(format!("first on line {line} of the material file"));
+                self.warnings.add(WarningKind::MaterialBroken, 1, place);
             }
+            value
         };
         match keyword {
             b"Kd" => {
@@ -107,7 +107,7 @@ impl<'f> MaterialTable<'f> {
                 // One value alone is a grey.
                 let (g, b) = if cur.at_line_end() { (Some(r), Some(r)) } else { (number(cur), number(cur)) };
                 if let (Some(g), Some(b)) = (g, b) {
-                    entry.color = Some([r, g, b].map(|c| srgb_to_linear(f64::from(c.clamp(0.0, 1.0))) as f32));
+                    entry.color = Some([r, g, b].map(|c| srgb_to_linear(c.clamp(0.0, 1.0)) as f32));
                 }
             }
             b"d" => {
@@ -115,9 +115,9 @@ impl<'f> MaterialTable<'f> {
                 if ahead.word() == b"-halo" {
                     *cur = ahead;
                 }
-                entry.opacity = number(cur).or(entry.opacity);
+                entry.opacity = number(cur).map(|d| d as f32).or(entry.opacity);
             }
-            b"Tr" => entry.transparency = number(cur).or(entry.transparency),
+            b"Tr" => entry.transparency = number(cur).map(|t| t as f32).or(entry.transparency),
             b"map_Kd" => {
                 if let Some((picture, options)) = picture_name(cur) {
                     self.warnings.add(WarningKind::TextureOptions, options, || None);

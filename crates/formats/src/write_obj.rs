@@ -69,8 +69,8 @@ fn material_names(export: &Export<'_>) -> Vec<String> {
 fn clean(name: &str, instead: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     // A # between blanks would start a comment, a backslash at the end would join the next line.
-    let name = name.replace(" # ", " #");
-    let name = name.trim().trim_start_matches("# ").trim_end_matches(['\\', ' ']);
+    let name = name.split(' ').map(|word| if word == "#" { "_" } else { word }).collect::<Vec<_>>().join(" ");
+    let name = name.trim().trim_end_matches(['\\', ' ']);
     if name.is_empty() { instead.to_owned() } else { name.to_owned() }
 }
 
@@ -143,8 +143,13 @@ impl Text {
 
     /// A blank and a linear colour component as a display value.
     fn display(&mut self, value: f32) {
-        let text = format!("{:.10}", linear_to_srgb(f64::from(value)));
+        let shown = linear_to_srgb(f64::from(value));
         self.0.push(b' ');
+        if shown != 0.0 && shown < 0.01 {
+            let _ = write!(self.0, "{shown:.9e}");
+            return;
+        }
+        let text = format!("{shown:.10}");
         self.0.extend_from_slice(text.trim_end_matches('0').trim_end_matches('.').as_bytes());
     }
 

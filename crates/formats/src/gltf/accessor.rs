@@ -134,7 +134,7 @@ fn cut<'s>(
         Some(data) => Ok((data, stride)),
         None => {
             let have = bytes.len();
-            let end = end.map_or("too many".to_owned(), |end| end.to_string());
+            let end = end.map_or("more than 2^64".to_owned(), |end| end.to_string());
             Err(bad(place, format!("its {count} elements need {end} bytes, but bufferViews[{view}] has {have}")))
         }
     }

@@ -6,7 +6,7 @@
 //!
 //! The surfaces of all nodes of the scene are put one after another: primitives in the order of the nodes, each with the
 //! positions of its accessor moved by its node's transform. Primitives that share their accessors and transform share their
-//! positions too. A node is a group. Faces of a mirrored node are turned round, so that they keep facing outwards.
+//! positions too. A node is a group, and a part that is welded by itself. Faces of a mirrored node are turned round, so that they keep facing outwards.
 //! glTF only knows triangles; where the FB_ngon_encoding extension is present they are read as the polygons they came from.
 //!
 //! The file is read as plain JSON values with our own checks instead of through typed structures: the accessor checks are

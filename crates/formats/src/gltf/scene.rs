@@ -36,6 +36,8 @@ pub(super) struct Builder<'s> {
     /// Whether some triangles did not come as polygons.
     triangulated: bool,
     meshes_shown: BTreeSet<usize>,
+    /// Meshes placed so far; each is a part that is welded by itself.
+    parts: u32,
 }
 
 impl<'s> Builder<'s> {
@@ -50,6 +52,7 @@ impl<'s> Builder<'s> {
             colored: 0,
             triangulated: false,
             meshes_shown: BTreeSet::new(),
+            parts: 0,
         }
     }
 
@@ -140,6 +143,7 @@ impl<'s> Builder<'s> {
         let group = self.groups.len() as u32;
         let faces = self.soup.face_count();
         for transform in instances {
+            self.parts += 1;
             for (p, primitive) in list(mesh, "primitives").iter().enumerate() {
                 self.primitive(primitive, (number, p), transform)?;
             }
@@ -315,7 +319,7 @@ impl<'s> Builder<'s> {
         if let Some(base) = self.bases.get(&key) {
             return Ok((*base, count));
         }
-        let size = 12 + if uv.is_some() { 8 } else { 0 } + if color.is_some() { 16 } else { 0 };
+        let size = 16 + if uv.is_some() { 8 } else { 0 } + if color.is_some() { 16 } else { 0 };
         source.budget.borrow_mut().spend("The model", count as u64, size)?;
         let start = self.soup.positions.len();
         if start as u64 + count as u64 >= u64::from(NONE)
@@ -324,6 +328,7 @@ impl<'s> Builder<'s> {
             return Err(bad(place, "the model has more vertices than 32 bits can number"));
         }
         self.positions(&accessor, positions, transform)?;
+        self.soup.parts.resize(self.soup.positions.len(), self.parts - 1);
         if let Some((number, accessor)) = &color {
             self.colors(accessor, *number, start)?;
         }
@@ -421,6 +426,9 @@ impl<'s> Builder<'s> {
         }
         if !self.soup.face_materials.is_empty() {
             self.soup.face_materials.resize(self.soup.face_count(), NONE);
+        }
+        if self.soup.parts.first() == self.soup.parts.last() {
+            self.soup.parts.clear();
         }
         // One group says nothing.
         if self.groups.len() < 2 {
