@@ -22,7 +22,7 @@ fn main() {
         r.set_surface(&data).unwrap();
         r.set_cage(&cage.points, &cage.edges()).unwrap();
         let size = r.bounds().unwrap().max[0];
-        let camera = perspective([5.2 * size, 3.6 * size, 6.6 * size], [0.0; 3], aspect, 4.0 * size);
+        let camera = perspective([2.9 * size, 2.0 * size, 3.7 * size], [0.0; 3], aspect, 3.0 * size);
         for (theme, style) in [("light", Style::light()), ("dark", Style::dark())] {
             shoot(&mut r, &frame(camera, style.clone()), w, h).save(&format!("{name}-{theme}"));
             let bold = Style { edges: Edges::Bold, cage: true, ..style.clone() };

@@ -76,6 +76,12 @@ pub enum Error {
         /// Number of vertices.
         vertices: u64,
     },
+    /// Quads that claim to come from a quad split but are not in its order.
+    #[error("face {face} is not an old vertex, an edge point, a face point and an edge point; give no parent ranges")]
+    Order {
+        /// The face.
+        face: u64,
+    },
     /// Reading a picture back failed.
     #[error("the picture could not be read back from the graphics adapter: {0}")]
     Readback(String),

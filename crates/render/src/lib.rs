@@ -53,3 +53,8 @@ pub use surface::{Bounds, Faces, Part, Surface, SurfaceData, Upload};
 pub fn shaders() -> Vec<(&'static str, String)> {
     pipelines::Module::ALL.iter().map(|m| (m.name(), m.source())).collect()
 }
+
+/// Bytes of the frame's uniform buffer, for the test that holds it against the shaders' `Globals`.
+pub fn uniform_bytes() -> usize {
+    size_of::<uniform::Globals>()
+}

@@ -48,20 +48,20 @@ fn add(e: &mut Irradiance, d: Vec3, color: Vec3) {
 pub(crate) fn studio(eye: Mat3, up: Vec3) -> (Irradiance, [SoftBox; 3]) {
     let mut e = Irradiance::default();
     // The whole room, so that no side is black.
-    e[0] = [0.13, 0.135, 0.145, 0.0];
+    e[0] = [0.145, 0.15, 0.16, 0.0];
     let up = up.normalize_or(Vec3::Y);
     add(&mut e, up, Vec3::new(0.30, 0.315, 0.34));
-    add(&mut e, -up, Vec3::new(0.105, 0.10, 0.095));
+    add(&mut e, -up, Vec3::new(0.21, 0.205, 0.20));
     let key = eye * Vec3::new(-0.52, 0.60, 0.61).normalize();
     let fill = eye * Vec3::new(0.86, 0.05, 0.50).normalize();
     let rim = eye * Vec3::new(0.35, 0.45, -0.82).normalize();
-    add(&mut e, key, Vec3::new(0.78, 0.755, 0.72));
+    add(&mut e, key, Vec3::new(0.74, 0.72, 0.69));
     add(&mut e, fill, Vec3::new(0.150, 0.165, 0.19));
     add(&mut e, rim, Vec3::new(0.22, 0.225, 0.235));
     let boxes = [
-        soft_box(key, eye * Vec3::Y, 0.50, 0.62, Vec3::new(4.6, 4.5, 4.3), 0.55),
-        soft_box(fill, eye * Vec3::Y, 0.22, 0.95, Vec3::new(1.5, 1.6, 1.75), 0.60),
-        soft_box(rim, eye * Vec3::X, 0.35, 0.90, Vec3::new(2.6, 2.7, 2.8), 0.60),
+        soft_box(key, eye * Vec3::Y, 0.46, 0.58, Vec3::new(3.6, 3.5, 3.35), 0.95),
+        soft_box(fill, eye * Vec3::Y, 0.22, 0.95, Vec3::new(1.3, 1.4, 1.5), 0.95),
+        soft_box(rim, eye * Vec3::X, 0.35, 0.90, Vec3::new(2.4, 2.5, 2.6), 0.90),
     ];
     (e, boxes)
 }

@@ -90,6 +90,6 @@ mod tests {
             let s = i as f32 / 255.0;
             assert_eq!((encode(decode(s)) * 255.0).round() as u32, i);
         }
-        assert_eq!(color([1.0, 0.0, 0.214_041, 0.5]), [255, 0, 128, 128]);
+        assert_eq!(color([1.0, 0.0, 0.215_861, 0.5]), [255, 0, 128, 128]);
     }
 }

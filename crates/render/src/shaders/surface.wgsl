@@ -16,7 +16,8 @@ struct Material {
 struct Surface {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) rel: vec3<f32>,                     // from the eye
-    @location(1) normal: vec3<f32>,
+    // At the centroid: extrapolated to the middle of a pixel that the face only grazes, it would turn away.
+    @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
     @location(2) bary: vec3<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) color: vec3<f32>,
@@ -153,7 +154,7 @@ fn neutral(c: vec3<f32>) -> vec3<f32> {
     return mix(color * (new_peak / peak), vec3(new_peak), k);
 }
 
-fn shade(in: Surface, n: vec3<f32>, v: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
+fn shade(n: vec3<f32>, v: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
     let facing = clamp(dot(n, v), 0.0, 1.0);
     let r = reflect(-v, n);
     let fresnel = 0.04 + 0.30 * pow(1.0 - facing, 5.0);
@@ -218,7 +219,11 @@ fn fs_shaded(in: Surface, @builtin(front_facing) front: bool) -> @location(0) ve
             }
         }
         n = n * inverseSqrt(max(dot(n, n), 1e-30));
-        color = shade(in, select(-n, n, front), v, base);
+        n = select(-n, n, front);
+        // A vertex normal that looks away from the viewer is bent back to the outline.
+        let away = min(dot(n, v), 0.0);
+        n = normalize(n - away * v);
+        color = shade(n, v, base);
     }
     let e = edges(in.bary, grad, in.flags);
     color = mix(color, g.edge_new.rgb, e.y);
