@@ -156,13 +156,13 @@ fn scale(soup: &mut Soup, factor: Option<f32>) -> Result<(), BuildError> {
         Some(factor) => factor,
         None => {
             let sides = used_bounds(soup).map(|b| (b.max - b.min).max_element());
-            sides.filter(|s| *s > 0.0 && s.is_finite()).ok_or(BuildError::Flat)?.recip()
+            sides.map(f32::recip).filter(|f| *f > 0.0 && f.is_finite()).ok_or(BuildError::Flat)?
         }
     };
     let finite = |p: &[f32; 3]| p.iter().all(|x| x.is_finite());
     for p in &mut soup.positions {
         let scaled = p.map(|x| x * factor);
-        if finite(p) && !finite(&scaled) || !factor.is_finite() {
+        if finite(p) && !finite(&scaled) {
             return Err(BuildError::Scale(factor));
         }
         *p = scaled;

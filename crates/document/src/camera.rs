@@ -470,6 +470,10 @@ fn decimal(value: f32, places: i32) -> String {
 
 /// An angle in degrees brought into (-180, 180].
 pub fn wrap_degrees(angle: f32) -> f32 {
+    // What lies there already keeps its last digit.
+    if angle > -180.0 && angle <= 180.0 {
+        return angle;
+    }
     let wrapped = angle.rem_euclid(360.0);
     if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
 }

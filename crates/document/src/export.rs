@@ -4,7 +4,7 @@
 //! programs that draw. Groups, materials, pictures, texture coordinates and vertex colours go along, each face with those of
 //! the face that it came from. Cost: linear in the level.
 
-use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_obj};
+use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_glb, write_obj};
 use limn_mesh::{Faces, Refined};
 
 use crate::document::Document;
@@ -93,7 +93,7 @@ impl Document {
         };
         let mut files = match format {
             ExportFormat::Obj => write_obj(&export)?,
-            ExportFormat::Glb => return Err(ExportError::Format { file: file.to_owned() }),
+            ExportFormat::Glb => vec![OutFile { name: name.to_owned(), bytes: write_glb(&export)? }],
         };
         if let Some(first) = files.first_mut() {
             // As the person wrote it, capitals of the extension included.

@@ -16,6 +16,7 @@
 //! (`open`, models, settings, view) may be in one: a link never writes files or answers questions.
 
 use crate::command::{Class, Command, ParseError, VERSION};
+use crate::words::shorten;
 
 /// Why a link cannot be opened.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -130,15 +131,6 @@ fn read_part(part: usize, text: &str) -> Result<Command, LinkError> {
         Ok(command) if command.class() == Class::Action => Err(LinkError::Action { part, text: shorten(&plain) }),
         Ok(command) => Ok(command),
     }
-}
-
-/// At most 60 characters, for messages.
-fn shorten(text: &str) -> String {
-    let mut short: String = text.chars().take(60).collect();
-    if short.len() < text.len() {
-        short.push('…');
-    }
-    short
 }
 
 fn escape(c: char, out: &mut String) {

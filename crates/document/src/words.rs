@@ -83,6 +83,15 @@ pub fn quote(word: &str) -> String {
     text
 }
 
+/// At most 60 characters, for messages.
+pub(crate) fn shorten(text: &str) -> String {
+    let mut short: String = text.chars().take(60).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -52,6 +52,12 @@ pub fn complete(line: &str) -> Vec<String> {
                 }
                 None => {}
             }
+            // Behind a whole command the next may begin.
+            if !start.is_empty() && words.get(from..).is_some_and(|w| parse_words(w).is_ok()) {
+                let all = COMMANDS.iter().map(|s| s.name.to_owned());
+                let more: Vec<String> = all.filter(|name| !found.contains(name)).collect();
+                found.extend(more);
+            }
             found.extend(row.flags.iter().filter(|f| !given.iter().any(|g| g == *f)).map(|&f| f.to_owned()));
         }
     }

@@ -13,7 +13,7 @@ use std::str::FromStr;
 use super::table::{COMMANDS, Keys, Parsed, Spec, spec};
 use super::{Command, table};
 use crate::view::{VIEW_KEYS, ViewSet};
-use crate::words::{self, WordError};
+use crate::words::{self, WordError, shorten};
 
 /// Why words are no command.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -104,10 +104,10 @@ fn known(keys: &[&'static str]) -> String {
     if keys.is_empty() { String::new() } else { format!("; it knows {}", keys.join(", ")) }
 }
 
-/// The command's name that differs least from `word`, if little: at most a third of its letters.
+/// The command's name that differs least from `word`, if little: by at most two fifths of its letters.
 fn nearest(word: &str) -> Option<&'static str> {
     let best = COMMANDS.iter().map(|s| (distance(word, s.name), s.name)).min()?;
-    (best.0 * 3 <= best.1.len()).then_some(best.1)
+    (best.0 * 5 <= best.1.len() * 2).then_some(best.1)
 }
 
 /// Levenshtein's distance, in bytes. Cost: product of the lengths, of which the first is cut to 32.
@@ -134,7 +134,7 @@ fn distance(a: &str, b: &str) -> usize {
 /// [`ParseError`]: no such command, or arguments that do not fit.
 pub fn parse_words<S: AsRef<str>>(words: &[S]) -> Result<(Command, usize), ParseError> {
     let name = words.first().ok_or(ParseError::Empty)?.as_ref();
-    let spec = spec(name).ok_or_else(|| ParseError::Unknown { word: name.to_owned(), near: nearest(name) })?;
+    let spec = spec(name).ok_or_else(|| ParseError::Unknown { word: shorten(name), near: nearest(name) })?;
     let mut parsed = Parsed::default();
     let mut args = spec.args.iter();
     let mut used = 1;
@@ -148,7 +148,7 @@ pub fn parse_words<S: AsRef<str>>(words: &[S]) -> Result<(Command, usize), Parse
                 None => {
                     return Err(ParseError::Argument {
                         command: spec.name,
-                        word: word.to_owned(),
+                        word: shorten(word),
                         expected: arg.kind.expected(),
                         usage: spec.usage(),
                     });
@@ -180,13 +180,13 @@ fn read_key(spec: &'static Spec, key: &str, value: &str, parsed: &mut Parsed) ->
         Keys::View => {
             let known = VIEW_KEYS.iter().find(|k| k.name == key).ok_or_else(|| ParseError::Key {
                 command: spec.name,
-                key: key.to_owned(),
+                key: shorten(key),
                 keys: VIEW_KEYS.iter().map(|k| k.name).collect(),
             })?;
             let set = ViewSet::parse(key, value).ok_or_else(|| ParseError::KeyValue {
                 command: spec.name,
-                key: key.to_owned(),
-                value: value.to_owned(),
+                key: shorten(key),
+                value: shorten(value),
                 expected: known.values(),
             })?;
             parsed.view.push(set);
@@ -214,7 +214,7 @@ pub fn parse_all<S: AsRef<str>>(words: &[S]) -> Result<Vec<Command>, ParseError>
                 let command = commands.last().map_or("", Command::name);
                 return Err(ParseError::Extra {
                     command,
-                    word: first.as_ref().to_owned(),
+                    word: shorten(first.as_ref()),
                     usage: spec(command).map(Spec::usage).unwrap_or_default(),
                 });
             }
@@ -248,7 +248,7 @@ impl FromStr for Command {
             None => Ok(command),
             Some(word) => Err(ParseError::Extra {
                 command: command.name(),
-                word: word.clone(),
+                word: shorten(word),
                 usage: spec(command.name()).map(Spec::usage).unwrap_or_default(),
             }),
         }
