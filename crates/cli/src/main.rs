@@ -53,6 +53,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "`limn run` takes one script, as in `limn run script.limn`, or - for standard input".into(),
             )),
         },
+        "" => Err(Failure::Usage("the source is empty; name a model file or builtin:NAME".into())),
         source => {
             let mut commands = parse_all(rest).map_err(|error| Failure::Usage(error.to_string()))?;
             if commands.is_empty() {
