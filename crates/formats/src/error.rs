@@ -294,6 +294,15 @@ impl fmt::Display for Warning {
     }
 }
 
+/// A name from a file, fit for a message: at most 80 characters, control characters as `?`.
+pub(crate) fn short(name: &str) -> String {
+    let mut out: String = name.chars().take(80).map(|c| if c.is_control() { '?' } else { c }).collect();
+    if out.len() < name.len() {
+        out.push('\u{2026}');
+    }
+    out
+}
+
 /// Collects warnings, one per kind.
 #[derive(Default)]
 pub(crate) struct Warnings(Vec<(Warning, usize)>);
@@ -317,6 +326,7 @@ impl Warnings {
 
     /// Counts one more of a kind with a name; the first five are listed. The caller gives each name once.
     pub fn name(&mut self, kind: WarningKind, name: &str) {
+        let name = &short(name);
         match self.0.iter_mut().find(|(w, _)| w.kind == kind) {
             Some((w, names)) => {
                 w.count += 1;

@@ -39,6 +39,23 @@ pub fn read(name: &str, bytes: &[u8], files: &dyn Files, limits: &Limits) -> Res
     }
 }
 
+/// The files that a model needs beside it, as it names them: an OBJ's material files, a material file's pictures, a glTF's
+/// buffers and pictures. For loaders that fetch siblings by name; a name may be percent-encoded or have folders.
+///
+/// Each name once, in the order of the file; empty if the file cannot be read. Cost: one pass over the bytes.
+pub fn references(name: &str, bytes: &[u8]) -> Vec<String> {
+    let is_mtl = name.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case("mtl"));
+    let mut names = match format(name, bytes) {
+        Ok(Format::Gltf) => gltf::references(bytes),
+        _ if is_mtl => mtl::pictures(bytes),
+        Ok(Format::Obj) => obj::references(bytes),
+        Err(_) => Vec::new(),
+    };
+    let mut seen = std::collections::BTreeSet::new();
+    names.retain(|name| seen.insert(name.clone()));
+    names
+}
+
 enum Format {
     Obj,
     Gltf,

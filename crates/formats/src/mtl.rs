@@ -14,7 +14,7 @@ use crate::{
     error::{Budget, WarningKind, Warnings},
     files::{find, image_type},
     model::srgb_to_linear,
-    scan::Cursor,
+    scan::{Cursor, quote},
 };
 
 /// One `newmtl`, pictures not looked up yet.
@@ -35,7 +35,7 @@ pub(crate) struct MaterialTable<'f> {
     images: Vec<Image>,
     /// Image numbers by the reference in the MTL; `None` if there is no such file.
     pictures: BTreeMap<String, Option<u32>>,
-    /// Whether any library was found; undefined materials are only worth a word if so.
+    /// Libraries that were not found, so that each is named once.
     missing: Vec<String>,
 }
 
@@ -125,8 +125,8 @@ impl<'f> MaterialTable<'f> {
                 }
             }
             other => {
-                let other = String::from_utf8_lossy(other);
-                self.warnings.add(WarningKind::MaterialSettings, 1, || Some(format!("such as {other}")));
+                let place = || Some(format!("such as {}", quote(other)));
+                self.warnings.add(WarningKind::MaterialSettings, 1, place);
             }
         }
     }
@@ -200,6 +200,19 @@ pub(crate) fn library_names(list: &str) -> Vec<String> {
     let rest = name.trim();
     if !rest.is_empty() {
         names.push(rest.to_owned());
+    }
+    names
+}
+
+/// The pictures that a material file refers to.
+pub(crate) fn pictures(bytes: &[u8]) -> Vec<String> {
+    let mut cur = Cursor::new(bytes);
+    let mut names = Vec::new();
+    while !cur.at_end() {
+        if !cur.at_line_end() && cur.word() == b"map_Kd" {
+            names.extend(picture_name(&mut cur).map(|(name, _)| name));
+        }
+        cur.next_line();
     }
     names
 }

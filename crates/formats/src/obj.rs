@@ -24,7 +24,7 @@ use crate::{
     Files, Limits, Model, ReadError, Tags, Warning,
     error::{Budget, WarningKind, Warnings},
     model::{linear_to_srgb, model_name, srgb_to_linear},
-    mtl::MaterialTable,
+    mtl::{MaterialTable, library_names},
     scan::{Cursor, NumberError, quote},
 };
 
@@ -52,6 +52,19 @@ pub(crate) fn looks_like_obj(bytes: &[u8]) -> bool {
         cur.word() == b"v" && cur.float().is_ok() && cur.float().is_ok() && cur.float().is_ok()
     };
     !head.contains(&0) && head.split(|b| matches!(b, b'\n' | b'\r')).any(vertex)
+}
+
+/// The material files that an OBJ file refers to.
+pub(crate) fn references(bytes: &[u8]) -> Vec<String> {
+    let mut cur = Cursor::new(bytes);
+    let mut names = Vec::new();
+    while !cur.at_end() {
+        if !cur.at_line_end() && cur.word() == b"mtllib" {
+            names.extend(library_names(&String::from_utf8_lossy(cur.rest())));
+        }
+        cur.next_line();
+    }
+    names
 }
 
 /// Refuses what cannot be text.

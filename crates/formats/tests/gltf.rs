@@ -695,3 +695,18 @@ fn the_memory_budget_holds() {
     let file = file.with(json!({"nodes": [{"mesh": 0, "extensions": extension}]}));
     assert_eq!(file.fails(), "The instances would need 448.1 GB of memory, more than the limit of 1 GB.");
 }
+
+#[test]
+fn references_are_listed() {
+    use limn_formats::references;
+    let file = File::two_triangles().with(json!({
+        "images": [{"uri": "a b.png"}, {"uri": "data:image/png;base64,"}, {"bufferView": 0}, {"uri": "a b.png"}],
+    }));
+    assert_eq!(references("a.gltf", &file.gltf()), ["My%20Data.bin", "a b.png"]);
+    assert_eq!(references("a.glb", &file.glb()), ["a b.png"]);
+    let obj = b"mtllib a.mtl my b.mtl # all\nv 0 0 0\n  mtllib a.mtl\n# mtllib no.mtl\n";
+    assert_eq!(references("a.obj", obj), ["a.mtl", "my b.mtl"]);
+    let mtl = b"newmtl a\nmap_Kd -s 1 1 1 dir\\my pic.png\nmap_Ks no.png\nmap_Kd -clamp on 2.png";
+    assert_eq!(references("a.MTL", mtl), ["dir\\my pic.png", "2.png"]);
+    assert_eq!(references("a.gltf", b"{"), [""; 0]);
+}

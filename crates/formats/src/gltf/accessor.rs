@@ -17,7 +17,7 @@ use super::{
     container::Source,
     json::{bad, index, list, text, whole},
 };
-use crate::ReadError;
+use crate::{ReadError, error::short};
 
 /// A component type, by its number in the file.
 #[derive(Clone, Copy, PartialEq)]
@@ -154,7 +154,9 @@ impl<'s> Accessor<'s> {
             Some("VEC2") => 2,
             Some("VEC3") => 3,
             Some("VEC4") => 4,
-            other => return Err(bad(place, format!("its type {} cannot be used here", other.unwrap_or("(missing)")))),
+            other => {
+                return Err(bad(place, format!("its type {} cannot be used here", short(other.unwrap_or("(missing)")))));
+            }
         };
         let count = whole(value, "count", place)?.ok_or_else(|| bad(place, "it has no count"))?;
         if count >= u64::from(u32::MAX) {

@@ -15,7 +15,7 @@ use serde_json::Value;
 use super::json::{bad, index, list, text, whole};
 use crate::{
     Files, Limits, ReadError,
-    error::Budget,
+    error::{Budget, short},
     files::{data_uri, find},
 };
 
@@ -89,7 +89,7 @@ impl<'a> Source<'a> {
         }
         match find(self.files, uri) {
             Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
-            None => Err(ReadError::MissingFile { missing: uri.to_owned(), needed_by: self.file.to_owned() }),
+            None => Err(ReadError::MissingFile { missing: short(uri), needed_by: self.file.to_owned() }),
         }
     }
 

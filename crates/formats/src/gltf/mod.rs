@@ -34,7 +34,7 @@ use self::{
 };
 use crate::{
     Files, Limits, Model, ReadError, Tags, Warning,
-    error::{WarningKind, Warnings},
+    error::{WarningKind, Warnings, short},
     model::model_name,
 };
 
@@ -83,6 +83,14 @@ pub(crate) fn read(
     builder.finish()
 }
 
+/// The files that a glTF file refers to; empty if it does not parse.
+pub(crate) fn references(bytes: &[u8]) -> Vec<String> {
+    let Ok(source) = Source::open("", bytes, &(), &Limits::default()) else { return Vec::new() };
+    let lists = ["buffers", "images"].iter().flat_map(|key| list(&source.root, key));
+    let uris = lists.filter_map(|value| text(value, "uri"));
+    uris.filter(|uri| !uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"))).map(str::to_owned).collect()
+}
+
 /// Whether these bytes are meant as glTF: the binary mark, or a JSON object.
 pub(crate) fn is_gltf(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -96,7 +104,7 @@ fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
     let version = version.map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
     // In glTF 1.0 the lists were maps.
     let old = ["meshes", "nodes", "accessors"].iter().any(|key| source.root.get(*key).is_some_and(|v| v.is_object()));
-    let refuse = |version: String| Err(ReadError::Version { file: source.file.to_owned(), version });
+    let refuse = |version: String| Err(ReadError::Version { file: source.file.to_owned(), version: short(&version) });
     match version.filter(|v| !v.is_empty()) {
         _ if old => refuse("1.0".to_owned()),
         None => {
@@ -121,7 +129,7 @@ fn check_required(source: &Source<'_>) -> Result<(), ReadError> {
             _ if KNOWN.contains(&name) || HARMLESS.iter().any(|h| name.starts_with(h)) => continue,
             _ => "export the model without it",
         };
-        return Err(ReadError::Extension { name: name.to_owned(), advice });
+        return Err(ReadError::Extension { name: short(name), advice });
     }
     Ok(())
 }

@@ -275,7 +275,7 @@ impl<'s> Builder<'s> {
         for key in attributes.as_object().into_iter().flat_map(|a| a.keys()) {
             let skin = key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_");
             if !skin && !matches!(key.as_str(), "POSITION" | "NORMAL" | "COLOR_0") && key != texture {
-                self.warnings.add(WarningKind::Attributes, 1, || Some(format!("such as {key}")));
+                self.warnings.add(WarningKind::Attributes, 1, || Some(format!("such as {}", short(key))));
             }
         }
     }
@@ -306,9 +306,9 @@ impl<'s> Builder<'s> {
                 match found {
                     Ok(Some((n, a))) if a.count == count && widths.contains(&a.width) => return Ok(Some((n, a))),
                     Err(error @ (ReadError::MissingFile { .. } | ReadError::TooBig { .. })) => return Err(error),
-                    _ => self
-                        .warnings
-                        .add(WarningKind::AttributeBroken, 1, || Some(format!("first {key} {number} of {place}"))),
+                    _ => self.warnings.add(WarningKind::AttributeBroken, 1, || {
+                        Some(format!("first {key} {} of {place}", short(&number.to_string())))
+                    }),
                 }
                 Ok(None)
             };
@@ -457,7 +457,9 @@ fn children(value: &Value, key: &str, count: usize, place: std::fmt::Arguments<'
             // Some writers print 3.0.
             let number =
                 child.as_f64().filter(|n| *n >= 0.0 && n.trunc() == *n && *n < count as f64).map(|n| n as usize);
-            number.ok_or_else(|| bad(place, format!("its {key} name node {child}, but the file has only {count}")))
+            number.ok_or_else(|| {
+                bad(place, format!("its {key} name node {}, but the file has only {count}", short(&child.to_string())))
+            })
         })
         .collect()
 }
