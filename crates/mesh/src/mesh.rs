@@ -11,10 +11,10 @@
 //! them. Cost: linear in corners, about 60 ns each. Source of the invariants: [`crate::topology`].
 
 use crate::connect::{self, Matching};
+use crate::report::{Note, Report};
 use crate::soup::{NONE, Soup};
 use crate::topology::{Connectivity, Counts, Topology, is_boundary};
 use crate::weld::{Weld, bounds, weld};
-use std::fmt;
 
 /// A topology with what lives on it. Immutable; shared behind an `Arc`.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,106 +90,6 @@ pub enum TopologyError {
 
 fn all_dropped(n: u64) -> String {
     if n == 0 { String::new() } else { format!(" (all {n} have fewer than three different corners)") }
-}
-
-/// What building did beyond copying. Elements are numbered as in the soup.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Report {
-    /// One entry for each kind of thing that happened, in a fixed order.
-    pub notes: Vec<Note>,
-}
-
-/// One kind of thing that building did.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Note {
-    /// Positions that became one vertex with another.
-    Welded {
-        /// How many vertices fewer.
-        count: u64,
-    },
-    /// Positions that no face uses; they are not part of the mesh.
-    Isolated {
-        /// How many.
-        count: u64,
-        /// The first.
-        first: u32,
-    },
-    /// Faces with fewer than three different corners; left out.
-    Degenerate {
-        /// How many.
-        count: u64,
-        /// The first.
-        first: u32,
-    },
-    /// Faces with repeated corners or spikes that were taken out, the rest kept.
-    Repaired {
-        /// How many.
-        count: u64,
-        /// The first.
-        first: u32,
-    },
-    /// Faces turned over so that neighbours agree.
-    Turned {
-        /// How many.
-        count: u64,
-        /// The first.
-        first: u32,
-    },
-    /// Edges with more than two faces, cut apart.
-    NonManifoldEdges {
-        /// How many.
-        count: u64,
-        /// The first, by its two positions.
-        first: [u32; 2],
-    },
-    /// Vertices where several fans of faces met, split.
-    NonManifoldVertices {
-        /// How many.
-        count: u64,
-        /// The first.
-        first: u32,
-    },
-    /// Edges cut because the surface has one side only.
-    OneSided {
-        /// How many.
-        count: u64,
-        /// The first, by its two positions.
-        first: [u32; 2],
-    },
-}
-
-impl fmt::Display for Note {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let s = |n: &u64| if *n == 1 { "" } else { "s" };
-        match self {
-            Note::Welded { count } => write!(f, "{count} duplicate position{} welded", s(count)),
-            Note::Isolated { count, first } => {
-                write!(f, "{count} vertex position{} used by no face (first: {first}) left out", s(count))
-            }
-            Note::Degenerate { count, first } => {
-                write!(f, "{count} face{} with fewer than three different corners (first: {first}) left out", s(count))
-            }
-            Note::Repaired { count, first } => {
-                write!(f, "{count} face{} with repeated corners (first: {first}) cleaned", s(count))
-            }
-            Note::Turned { count, first } => {
-                write!(f, "{count} face{} (first: {first}) turned over to agree with the neighbours", s(count))
-            }
-            Note::NonManifoldEdges { count, first: [a, b] } => {
-                write!(f, "{count} edge{} with more than two faces (first: {a}-{b}) cut apart and kept sharp", s(count))
-            }
-            Note::NonManifoldVertices { count, first } => {
-                write!(
-                    f,
-                    "{count} vertex{} where separate fans of faces meet (first: {first}) split",
-                    if *count == 1 { "" } else { " positions" }
-                )
-            }
-            Note::OneSided { count, first: [a, b] } => {
-                write!(f, "the surface has one side only; cut along {count} edge{} (first: {a}-{b})", s(count))
-            }
-        }
-    }
 }
 
 /// Facts about the shape that refinement does not change, and the bounds.

@@ -3,6 +3,7 @@
 mod common;
 
 use common::distance;
+use limn_mesh::refine::evaluate;
 use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme};
 use serde_json::Value;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ fn check(json: &str) {
         let plan = Plan { scheme: scheme(id).unwrap(), boundary, level };
         // Every library was given the positions rounded to f32.
         let rounded: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
-        let exact = limn_mesh::refine::evaluate(&mesh, plan, &rounded, |_| ()).unwrap();
+        let exact = evaluate(&mesh, plan, &rounded, |_| ()).unwrap();
         let theirs = triples(&theirs["positions"]);
         let d = distance(&exact, &theirs);
         assert!(d < 1e-9, "{}: level {level} is off by {d} in f64", oracle["source"]);

@@ -1,0 +1,106 @@
+//! What building a mesh did to its polygons, in sentences that the page shows as they are.
+//!
+//! Each kind of thing is told once, with how often it happened and where it happened first, in the file's numbering. An
+//! empty report means that the mesh is exactly what the file says.
+
+use std::fmt;
+
+/// What building did beyond copying. Elements are numbered as in the soup.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// One entry for each kind of thing that happened, in a fixed order.
+    pub notes: Vec<Note>,
+}
+
+/// One kind of thing that building did.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Note {
+    /// Positions that became one vertex with another.
+    Welded {
+        /// How many vertices fewer.
+        count: u64,
+    },
+    /// Positions that no face uses; they are not part of the mesh.
+    Isolated {
+        /// How many.
+        count: u64,
+        /// The first.
+        first: u32,
+    },
+    /// Faces with fewer than three different corners; left out.
+    Degenerate {
+        /// How many.
+        count: u64,
+        /// The first.
+        first: u32,
+    },
+    /// Faces with repeated corners or spikes that were taken out, the rest kept.
+    Repaired {
+        /// How many.
+        count: u64,
+        /// The first.
+        first: u32,
+    },
+    /// Faces turned over so that neighbours agree.
+    Turned {
+        /// How many.
+        count: u64,
+        /// The first.
+        first: u32,
+    },
+    /// Edges with more than two faces, cut apart.
+    NonManifoldEdges {
+        /// How many.
+        count: u64,
+        /// The first, by its two positions.
+        first: [u32; 2],
+    },
+    /// Vertices where several fans of faces met, split.
+    NonManifoldVertices {
+        /// How many.
+        count: u64,
+        /// The first.
+        first: u32,
+    },
+    /// Edges cut because the surface has one side only.
+    OneSided {
+        /// How many.
+        count: u64,
+        /// The first, by its two positions.
+        first: [u32; 2],
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = |n: &u64| if *n == 1 { "" } else { "s" };
+        match self {
+            Note::Welded { count } => write!(f, "{count} duplicate position{} welded", s(count)),
+            Note::Isolated { count, first } => {
+                write!(f, "{count} vertex position{} used by no face (first: {first}) left out", s(count))
+            }
+            Note::Degenerate { count, first } => {
+                write!(f, "{count} face{} with fewer than three different corners (first: {first}) left out", s(count))
+            }
+            Note::Repaired { count, first } => {
+                write!(f, "{count} face{} with repeated corners (first: {first}) cleaned", s(count))
+            }
+            Note::Turned { count, first } => {
+                write!(f, "{count} face{} (first: {first}) turned over to agree with the neighbours", s(count))
+            }
+            Note::NonManifoldEdges { count, first: [a, b] } => {
+                write!(f, "{count} edge{} with more than two faces (first: {a}-{b}) cut apart and kept sharp", s(count))
+            }
+            Note::NonManifoldVertices { count, first } => {
+                write!(
+                    f,
+                    "{count} vertex{} where separate fans of faces meet (first: {first}) split",
+                    if *count == 1 { "" } else { " positions" }
+                )
+            }
+            Note::OneSided { count, first: [a, b] } => {
+                write!(f, "the surface has one side only; cut along {count} edge{} (first: {a}-{b})", s(count))
+            }
+        }
+    }
+}
