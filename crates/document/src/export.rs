@@ -2,12 +2,13 @@
 //!
 //! The extension chooses the format: `.obj` keeps polygons, full precision and the canonical order of vertices; `.glb` is for
 //! programs that draw. Groups, materials, pictures, texture coordinates and vertex colours go along, each face with those of
-//! the face that it came from. Cost: linear in the level.
+//! the face that it came from. Vertices that building the mesh had split are written once. Cost: linear in the level.
 
 use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_glb, write_obj};
 use limn_mesh::{Faces, Refined};
 
 use crate::document::Document;
+use crate::merge::copies;
 
 /// Why nothing was written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -63,10 +64,15 @@ impl Document {
         }
         let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        let merged = copies(refined).map(|same| Merged::new(refined, &same));
+        let (points, colors, corners) = match &merged {
+            Some(m) => (&m.points[..], &m.colors[..], &m.corners[..]),
+            None => (&refined.points[..], &refined.colors[..], refined.faces.corners()),
+        };
         let faces = match &refined.faces {
-            Faces::Polygons { offsets, corners } => ExportFaces::Polygons { offsets, corners },
-            Faces::Triangles(corners) => ExportFaces::Triangles(corners),
-            Faces::Quads(corners) => ExportFaces::Quads(corners),
+            Faces::Polygons { offsets, .. } => ExportFaces::Polygons { offsets, corners },
+            Faces::Triangles(_) => ExportFaces::Triangles(corners),
+            Faces::Quads(_) => ExportFaces::Quads(corners),
         };
         // What a face of the level inherits from its face of the model.
         let inherit = |of: &[u32]| -> Vec<u32> {
@@ -77,14 +83,18 @@ impl Document {
             (0..faces.count()).map(|f| source(f).unwrap_or(limn_mesh::NONE)).collect()
         };
         let (face_groups, face_materials) = (inherit(&soup.face_groups), inherit(&soup.face_materials));
-        let normals = (format == ExportFormat::Glb).then(|| refined.normals());
+        // Copies keep normals of their own while they are drawn; in a file the first one's has to do.
+        let normals = (format == ExportFormat::Glb).then(|| match &merged {
+            Some(m) => m.keep(&refined.normals()),
+            None => refined.normals(),
+        });
         let export = Export {
             name: stem,
-            points: &refined.points,
+            points,
             faces,
             normals: normals.as_deref(),
             uv: refined.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..])),
-            colors: &refined.colors,
+            colors,
             face_groups: &face_groups,
             group_names: &model.groups,
             face_materials: &face_materials,
@@ -100,5 +110,41 @@ impl Document {
             first.name = name.to_owned();
         }
         Ok(files)
+    }
+}
+
+/// A level whose copies of split vertices are one again.
+struct Merged {
+    points: Vec<[f32; 3]>,
+    colors: Vec<[f32; 4]>,
+    corners: Vec<u32>,
+    /// Which vertices are kept.
+    kept: Vec<bool>,
+}
+
+impl Merged {
+    fn new(refined: &Refined, same: &[u32]) -> Merged {
+        let kept: Vec<bool> = same.iter().zip(0u32..).map(|(&to, v)| to == v).collect();
+        // A copy comes after its original, so that one pass numbers both.
+        let mut number: Vec<u32> = Vec::with_capacity(same.len());
+        let mut next = 0;
+        for (&to, v) in same.iter().zip(0u32..) {
+            if to == v {
+                number.push(next);
+                next += 1;
+            } else {
+                number.push(number.get(to as usize).copied().unwrap_or_default());
+            }
+        }
+        let corners =
+            refined.faces.corners().iter().map(|&c| number.get(c as usize).copied().unwrap_or_default()).collect();
+        let mut merged = Merged { points: Vec::new(), colors: Vec::new(), corners, kept };
+        merged.points = merged.keep(&refined.points);
+        merged.colors = merged.keep(&refined.colors);
+        merged
+    }
+
+    fn keep<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        values.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(v, _)| *v).collect()
     }
 }

@@ -27,6 +27,7 @@ pub mod export;
 pub mod history;
 pub mod info;
 pub mod link;
+mod merge;
 mod pinch;
 pub mod source;
 mod state;
