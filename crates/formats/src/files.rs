@@ -56,7 +56,7 @@ impl Files for Vec<(String, Vec<u8>)> {
 }
 
 /// Finds the file that a reference means: the exact name, else the same name percent-decoded, with `/` for `\`, without
-/// `.` and `..` parts and without case, the one that shares most trailing folders; ties go to the first by name.
+/// `.` and `..` parts and without (ASCII) case, the one that shares most trailing folders; ties go to the first by name.
 ///
 /// Gives the file's own name with its bytes. Cost: the names of all files once, unless the name is exact.
 pub fn find<'a>(files: &'a dyn Files, reference: &str) -> Option<(String, &'a [u8])> {
@@ -65,13 +65,15 @@ pub fn find<'a>(files: &'a dyn Files, reference: &str) -> Option<(String, &'a [u
     }
     let wanted = [parts(reference), parts(&percent_decode(reference))];
     let mut best: Option<(usize, String)> = None;
-    let mut names = files.names();
-    names.sort();
-    for name in names {
+    for name in files.names() {
         let own = parts(&name);
         let shared = wanted.iter().map(|w| w.iter().rev().zip(own.iter().rev()).take_while(|(a, b)| a == b).count());
         let shared = shared.max().unwrap_or(0);
-        if shared > best.as_ref().map_or(0, |(s, _)| *s) {
+        let better = match &best {
+            Some((most, first)) => shared > *most || (shared == *most && name < *first),
+            None => true,
+        };
+        if shared > 0 && better {
             best = Some((shared, name));
         }
     }
@@ -82,7 +84,7 @@ pub fn find<'a>(files: &'a dyn Files, reference: &str) -> Option<(String, &'a [u
 
 /// The lower-case parts of a path, query and fragment kept (they may be part of a dropped name).
 fn parts(path: &str) -> Vec<String> {
-    path.split(['/', '\\']).filter(|p| !matches!(*p, "" | "." | "..")).map(str::to_lowercase).collect()
+    path.split(['/', '\\']).filter(|p| !matches!(*p, "" | "." | "..")).map(str::to_ascii_lowercase).collect()
 }
 
 /// Decodes `%20` and its kin; what is not a valid escape stays.

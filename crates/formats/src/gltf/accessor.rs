@@ -155,7 +155,10 @@ impl<'s> Accessor<'s> {
             Some("VEC3") => 3,
             Some("VEC4") => 4,
             other => {
-                return Err(bad(place, format!("its type {} cannot be used here", short(other.unwrap_or("(missing)")))));
+                return Err(bad(
+                    place,
+                    format!("its type {} cannot be used here", short(other.unwrap_or("(missing)"))),
+                ));
             }
         };
         let count = whole(value, "count", place)?.ok_or_else(|| bad(place, "it has no count"))?;

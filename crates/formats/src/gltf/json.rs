@@ -4,7 +4,7 @@ use std::fmt::Arguments;
 
 use serde_json::Value;
 
-use crate::ReadError;
+use crate::{ReadError, error::short};
 
 /// An error about an element of the file.
 pub(super) fn bad(place: Arguments<'_>, problem: impl Into<String>) -> ReadError {
@@ -63,4 +63,13 @@ pub(super) fn numbers<const N: usize>(
         }
     }
     if good { Ok(Some(out)) } else { Err(bad(place, format!("its {key} is not a list of {N} numbers"))) }
+}
+
+/// A value for a message. Numbers and texts only: printing any JSON would bring in a whole serialiser.
+pub(super) fn shown(value: &Value) -> String {
+    match (value.as_f64(), value.as_str()) {
+        (Some(number), _) => number.to_string(),
+        (_, Some(text)) => format!("\"{}\"", short(text)),
+        _ => "(not a number)".to_owned(),
+    }
 }

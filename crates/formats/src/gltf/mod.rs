@@ -101,7 +101,7 @@ fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
     let asset = source.root.get("asset");
     let version = asset.and_then(|a| a.get("version"));
     // Some glTF 1.0 writers gave a number.
-    let version = version.map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+    let version = version.map(|v| v.as_str().map_or_else(|| json::shown(v), str::to_owned));
     // In glTF 1.0 the lists were maps.
     let old = ["meshes", "nodes", "accessors"].iter().any(|key| source.root.get(*key).is_some_and(|v| v.is_object()));
     let refuse = |version: String| Err(ReadError::Version { file: source.file.to_owned(), version: short(&version) });

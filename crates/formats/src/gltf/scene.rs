@@ -6,7 +6,7 @@
 
 use super::{
     accessor::Accessor,
-    json::{index, whole},
+    json::{index, shown, whole},
     material::{Materials, UvUse},
     polygons::{Mode, polygons},
     transform::Transform,
@@ -307,7 +307,7 @@ impl<'s> Builder<'s> {
                     Ok(Some((n, a))) if a.count == count && widths.contains(&a.width) => return Ok(Some((n, a))),
                     Err(error @ (ReadError::MissingFile { .. } | ReadError::TooBig { .. })) => return Err(error),
                     _ => self.warnings.add(WarningKind::AttributeBroken, 1, || {
-                        Some(format!("first {key} {} of {place}", short(&number.to_string())))
+                        Some(format!("first {key} {} of {place}", shown(number)))
                     }),
                 }
                 Ok(None)
@@ -458,7 +458,7 @@ fn children(value: &Value, key: &str, count: usize, place: std::fmt::Arguments<'
             let number =
                 child.as_f64().filter(|n| *n >= 0.0 && n.trunc() == *n && *n < count as f64).map(|n| n as usize);
             number.ok_or_else(|| {
-                bad(place, format!("its {key} name node {}, but the file has only {count}", short(&child.to_string())))
+                bad(place, format!("its {key} name node {}, but the file has only {count}", shown(child)))
             })
         })
         .collect()
