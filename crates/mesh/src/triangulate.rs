@@ -30,6 +30,10 @@ const STRAIGHT: f64 = 1e-6;
 /// How often the rules may be tightened again after they had to be relaxed. Bounds the work on wholly degenerate polygons.
 const RELAPSES: u32 = 16;
 
+/// How many corners may be looked at in search of blockers, at least; past this and 1,024 for each corner nothing blocks.
+/// About a second. No polygon that does not cross itself all over comes near.
+const PATIENCE: u64 = 1 << 28;
+
 /// The end of a list of waiting corners.
 const END: u32 = u32::MAX;
 
@@ -194,6 +198,10 @@ struct Clipper<'a> {
     /// (tip, next in the list).
     waiting: Vec<(u32, u32)>,
     heap: BinaryHeap<Candidate>,
+    /// Whether a corner is on the heap with the neighbours that it has now.
+    offered: Vec<bool>,
+    /// How many corners may still be looked at.
+    patience: u64,
     rule: Rule,
 }
 
@@ -212,6 +220,8 @@ impl<'a> Clipper<'a> {
             waiters: vec![END; n],
             waiting: Vec::new(),
             heap: BinaryHeap::with_capacity(n + n / 2),
+            offered: vec![false; n],
+            patience: PATIENCE + 1024 * n as u64,
             rule: Rule::Strict,
         };
         for i in 0..n as u32 {
@@ -243,7 +253,11 @@ impl<'a> Clipper<'a> {
                 continue;
             };
             let t = tip as usize;
-            if !self.alive[t] || self.prev[t] != a || self.next[t] != c || !self.fits(tip) {
+            if !self.alive[t] || self.prev[t] != a || self.next[t] != c {
+                continue;
+            }
+            self.offered[t] = false;
+            if !self.fits(tip) {
                 continue;
             }
             if let Some(blocker) = self.blocker(tip) {
@@ -262,6 +276,7 @@ impl<'a> Clipper<'a> {
             }
             self.release(tip);
             for i in [a, c] {
+                self.offered[i as usize] = false;
                 if self.blocks[i as usize] && self.is_convex(i) {
                     self.release(i);
                 }
@@ -299,7 +314,8 @@ impl<'a> Clipper<'a> {
 
     /// Puts corner `i` on the heap if it fits the rule.
     fn offer(&mut self, i: u32) {
-        if self.fits(i) {
+        if !self.offered[i as usize] && self.fits(i) {
+            self.offered[i as usize] = true;
             let (a, c) = (self.prev[i as usize], self.next[i as usize]);
             let length = distance2(self.points[a as usize], self.points[c as usize]);
             self.heap.push(Reverse((length.to_bits(), a.min(c), i, a, c)));
@@ -307,8 +323,8 @@ impl<'a> Clipper<'a> {
     }
 
     /// The first corner that lies in the ear at `tip`, if any does.
-    fn blocker(&self, tip: u32) -> Option<u32> {
-        if self.rule == Rule::Any {
+    fn blocker(&mut self, tip: u32) -> Option<u32> {
+        if self.rule == Rule::Any || self.patience == 0 {
             return None;
         }
         let (a, c) = (self.prev[tip as usize], self.next[tip as usize]);
@@ -324,6 +340,7 @@ impl<'a> Clipper<'a> {
             if p[0] > high[0] {
                 break;
             }
+            self.patience = self.patience.saturating_sub(1);
             if p[1] < low[1] || p[1] > high[1] || !self.blocks[i as usize] || i == a || i == c || i == tip {
                 continue;
             }

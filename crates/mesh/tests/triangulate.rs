@@ -67,16 +67,16 @@ fn quads_take_the_shorter_diagonal() {
 #[test]
 fn concave_quads_take_the_inner_diagonal() {
     // The outer diagonal is much the shorter.
-    let dart = [[0.0, 0.0], [10.0, -1.0], [1.0, 0.0], [10.0, 1.0]];
+    let dart = [[0.0, 0.0], [10.0, -0.5], [8.0, 0.0], [10.0, 0.5]];
     assert_eq!(run(&flat(&dart)), [[0, 1, 2], [0, 2, 3]]);
     for turn in 0..4 {
         let turned: Vec<[f32; 2]> = (0..4).map(|i| dart[(i + turn) % 4]).collect();
         assert_inside(&flat(&turned), &run(&flat(&turned)));
     }
-    // A corner in the middle of a side: cutting it off would leave a flat triangle.
-    assert_eq!(run(&flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.1]])), [[0, 1, 3], [1, 2, 3]]);
-    // Bent, and seen from below.
-    let bent = [[0.0, 0.0, 0.0], [2.0, 0.3, 1.0], [0.5, 0.0, 0.5], [1.0, 0.3, 2.0]];
+    // A corner in the middle of a side: the shorter diagonal would cut a flat triangle off.
+    assert_eq!(run(&flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 5.0]])), [[0, 1, 3], [1, 2, 3]]);
+    // Bent, and seen from below; the outer diagonal is the shorter one.
+    let bent = [[0.0, 0.0, 0.0], [10.0, 0.3, 0.5], [8.0, 0.0, 0.0], [10.0, 0.3, -0.5]];
     assert_eq!(run(&bent), [[0, 1, 2], [0, 2, 3]]);
 }
 
@@ -126,6 +126,21 @@ fn a_keyhole_around_a_hole() {
     assert_inside(&ring, &triangles);
     let total: f64 = triangles.iter().map(|t| area2(&ring, t)).sum();
     assert_eq!(total, 2.0 * 12.0);
+}
+
+#[test]
+fn a_plate_with_many_holes() {
+    // Forty square holes in a row, each joined to the lower side by a cut that is walked twice.
+    let mut plate = vec![[0.0, 0.0]];
+    for i in 0..40 {
+        let x = 3.0 * i as f32 + 1.0;
+        plate.extend([[x, 0.0], [x, 1.0], [x, 2.0], [x + 1.0, 2.0], [x + 1.0, 1.0], [x, 1.0], [x, 0.0]]);
+    }
+    plate.extend([[120.0, 0.0], [120.0, 3.0], [0.0, 3.0]]);
+    let plate = flat(&plate);
+    let triangles = run(&plate);
+    assert_inside(&plate, &triangles);
+    assert_eq!(triangles.iter().map(|t| area2(&plate, t)).sum::<f64>(), 2.0 * (360.0 - 40.0));
 }
 
 #[test]

@@ -27,7 +27,7 @@ pub struct Shape {
     pub name: &'static str,
     /// One line for menus and help.
     pub summary: &'static str,
-    /// Makes the cage. The creature takes about a millisecond, the others microseconds.
+    /// Makes the cage. The creature takes a few milliseconds, the others microseconds.
     pub build: fn() -> Soup,
 }
 
