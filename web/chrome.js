@@ -12,12 +12,13 @@ import { spell } from "./keys.js";
 function menu(button, popup) {
   const opener = byId(button, HTMLButtonElement);
   const list = byId(popup);
-  const set = (/** @type {boolean} */ open) => {
+  /** @param {boolean} open */
+  const set = (open) => {
     list.hidden = !open;
     setAttr(opener, "aria-expanded", String(open));
   };
   opener.addEventListener("click", () => {
-    set(list.hidden);
+    set(list.hidden === true);
     if (!list.hidden) list.querySelector("button")?.focus({ preventScroll: true });
   });
   addEventListener("pointerdown", (event) => {

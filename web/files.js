@@ -5,6 +5,11 @@ import { byId } from "./dom.js";
 
 /** @typedef {import("./protocol.js").NamedFile} NamedFile */
 
+/**
+ * What Chromium alone has: a handle that reads the file as it is at the time.
+ * @typedef {DataTransferItem & { getAsFileSystemHandle?: () => Promise<FileSystemHandle | null> }} WithHandle
+ */
+
 /** More files than this in one drop is a mistake, not a model. */
 const MOST_FILES = 2_000;
 
@@ -82,7 +87,7 @@ async function gather(transfer) {
   const found = items.map((item) => ({
     entry: item.webkitGetAsEntry?.() ?? null,
     file: item.getAsFile(),
-    handle: "getAsFileSystemHandle" in item ? item.getAsFileSystemHandle().catch(() => null) : null,
+    handle: /** @type {WithHandle} */ (item).getAsFileSystemHandle?.().catch(() => null) ?? null,
   }));
   /** @type {NamedFile[]} */
   const files = [];

@@ -7,7 +7,7 @@
 /** @typedef {import("./protocol.js").FromEngine} FromEngine */
 /** @typedef {import("./protocol.js").NamedFile} NamedFile */
 /** @typedef {import("./protocol.js").Renderer} Renderer */
-/** @typedef {import("../pkg/webgpu/limn_engine.js").Engine} Engine */
+/** @typedef {import("./protocol.js").Engine} Engine */
 
 /**
  * What the engine asks of its surroundings, beside the messages that go on to the page.
@@ -165,6 +165,7 @@ export function createHost(post) {
     try {
       const base = new URL(`../pkg/${folder}/`, import.meta.url);
       const wasm = fetch(new URL("limn_engine_bg.wasm", base));
+      /** @type {import("./protocol.js").EngineModule} */
       const module = await import(new URL("limn_engine.js", base).href);
       await module.default({ module_or_path: wasm });
       const { width, height, scale, insets } = start.size;

@@ -16,6 +16,10 @@ import { Supervisor } from "./supervisor.js";
 /** @typedef {import("./protocol.js").FromEngine} FromEngine */
 /** @typedef {import("./protocol.js").Theme} Theme */
 
+/** The model keeps clear of the page's words, but for their widest parts, which few models reach: CSS pixels. */
+const TOP = 44;
+const OVERLAP = 16;
+
 const root = document.documentElement;
 const stage = byId("stage");
 
@@ -51,7 +55,7 @@ const size = () => {
   const sheet = panel.width > box.width * 0.8;
   const right = panel.width && !sheet ? box.right - panel.left : 0;
   const bottom = panel.width && sheet ? box.bottom - panel.top : box.bottom - dock.top;
-  return { width: Math.max(1, width), height: Math.max(1, height), scale, insets: [byId("top").offsetHeight, right, Math.max(0, bottom), 0] };
+  return { width: Math.max(1, width), height: Math.max(1, height), scale, insets: [TOP, right, Math.max(0, bottom - OVERLAP), 0] };
 };
 
 const engine = new Supervisor(receive, size, theme);

@@ -187,3 +187,45 @@ export interface Card {
   /** Ask for these files again: the card shows an open button. */
   ask: string;
 }
+
+/** The wasm module, one of two, as wasm-bindgen makes it. */
+export interface EngineModule {
+  default(source: { module_or_path: Promise<Response> }): Promise<unknown>;
+  Engine: {
+    create(
+      canvas: OffscreenCanvas | HTMLCanvasElement,
+      renderer: Renderer,
+      width: number,
+      height: number,
+      scale: number,
+      insets: number[],
+      theme: Theme,
+      calm: boolean,
+      memory: number,
+      emit: (message: never) => void,
+    ): Promise<Engine>;
+  };
+}
+
+/** The engine's calls: crates/engine/src/engine/mod.rs says what each does. */
+export interface Engine {
+  replay(text: string, notice: string, names: string[], bytes: Uint8Array[]): void;
+  open(names: string[], bytes: Uint8Array[], again: boolean): void;
+  command(text: string, echo: boolean, drag: boolean): void;
+  input(batch: Float32Array): void;
+  resize(width: number, height: number, scale: number, insets: number[]): void;
+  theme(theme: Theme): void;
+  cancel(): void;
+  has_work(): boolean;
+  work(milliseconds: number): void;
+  wants_frame(): boolean;
+  frame(): boolean;
+  fetched(url: string, turn: number, bytes: Uint8Array | undefined, error: string): void;
+  decoded(turn: number, index: number, bitmap: ImageBitmap | undefined): void;
+}
+
+/** The part of a dedicated worker's global scope that the engine's thread uses. */
+export interface WorkerScope {
+  postMessage(message: FromEngine, transfer: Transferable[]): void;
+  onmessage: ((event: MessageEvent<ToEngine>) => void) | null;
+}

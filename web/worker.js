@@ -3,6 +3,6 @@
 
 import { createHost } from "./host.js";
 
-const scope = /** @type {DedicatedWorkerGlobalScope} */ (/** @type {unknown} */ (self));
+const scope = /** @type {import("./protocol.js").WorkerScope} */ (/** @type {unknown} */ (self));
 const deliver = createHost((message, transfer) => scope.postMessage(message, transfer ?? []));
 scope.onmessage = (event) => deliver(event.data);
