@@ -26,6 +26,7 @@ use crate::command::{self, Class, Command, VERSION};
 use crate::error::CommandError;
 use crate::history::History;
 use crate::link::{self, LinkError};
+use crate::outcome::{Outcome, Replayed};
 use crate::source::Source;
 use crate::state::{State, check, find_scheme};
 use crate::view::{View, ViewSet};
@@ -33,53 +34,11 @@ use crate::view::{View, ViewSet};
 /// How many of the models opened before the present one undo can bring back.
 pub const MODELS_KEPT: usize = 3;
 
-/// What the host has to do after a command.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
-    /// Nothing changed.
-    Nothing,
-    /// The picture changed, the surface did not: draw again.
-    View,
-    /// The plan changed, the mesh did not: refine again.
-    Refine,
-    /// The mesh changed (the plan may have, too): forget what was derived, refine again.
-    Model,
-    /// Read this source and answer with [`Document::load`], or with [`Document::cancel_open`] if it cannot be read.
-    /// Built-in models never ask.
-    Open(Source),
-    /// Write the present level to this file.
-    Export {
-        /// The name that the command gave.
-        file: String,
-    },
-    /// Tell about the present level, see [`Document::info`](crate::info).
-    Info {
-        /// As a JSON object.
-        json: bool,
-    },
-    /// Show this text.
-    Help(String),
-}
-
 /// What is being opened.
 #[derive(Clone, Debug)]
 struct Pending {
     source: Source,
     reload: bool,
-}
-
-/// What [`Document::replay`] came to.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Replayed {
-    /// The end.
-    Done,
-    /// A source that the host has to read: after [`Document::load`], go on with the rest.
-    Waiting {
-        /// What to read.
-        source: Source,
-        /// The commands still to come.
-        rest: Vec<Command>,
-    },
 }
 
 /// A source, the commands given since, and what follows from them. See the module's text.
@@ -330,7 +289,8 @@ impl Document {
         let mut after = State { adapted: None, ..before.clone() };
         let settings = &mut after.settings;
         match command {
-            Command::Weld(weld) => settings.weld = Some(*weld),
+            // What the format has anyway needs no word in the text.
+            Command::Weld(weld) => settings.weld = Some(*weld).filter(|w| *w != before.model.weld),
             Command::Quads(on) => {
                 settings.quads = *on;
                 if *on && settings.scheme.info.accepts == Accepts::Triangles {

@@ -15,6 +15,8 @@
 //! A link that cannot be read is an error that names its part; nothing is guessed or left out. Only commands of a document
 //! (`open`, models, settings, view) may be in one: a link never writes files or answers questions.
 
+use std::fmt::Write;
+
 use crate::command::{Class, Command, ParseError, VERSION};
 use crate::words::shorten;
 
@@ -134,12 +136,10 @@ fn read_part(part: usize, text: &str) -> Result<Command, LinkError> {
 }
 
 fn escape(c: char, out: &mut String) {
-    const HEX: &[u8; 16] = b"0123456789ABCDEF";
     let mut buffer = [0; 4];
-    for &byte in c.encode_utf8(&mut buffer).as_bytes() {
-        out.push('%');
-        out.push(char::from(HEX[usize::from(byte >> 4)]));
-        out.push(char::from(HEX[usize::from(byte & 15)]));
+    for byte in c.encode_utf8(&mut buffer).bytes() {
+        // Writing to a string cannot fail.
+        let _ = write!(out, "%{byte:02X}");
     }
 }
 
