@@ -342,12 +342,7 @@ impl<'a> Matching<'a> {
 
 /// The soup with the chosen pairs joined.
 fn rebuild(soup: &Soup, pairs: &[Pair], chosen: &[u32]) -> Soup {
-    let mut result = Soup {
-        positions: soup.positions.clone(),
-        uvs: soup.uvs.clone(),
-        colors: soup.colors.clone(),
-        ..Soup::default()
-    };
+    let mut result = soup.vertices_only();
     for (f, &choice) in chosen.iter().enumerate() {
         let mut corners: Vec<usize> = soup.face_range(f).collect();
         if let Some(pair) = pairs.get(choice as usize) {

@@ -46,6 +46,17 @@ impl Soup {
         soup
     }
 
+    /// The same vertices and texture coordinates, and no faces: where a new set of faces begins.
+    pub fn vertices_only(&self) -> Self {
+        Soup {
+            positions: self.positions.clone(),
+            parts: self.parts.clone(),
+            uvs: self.uvs.clone(),
+            colors: self.colors.clone(),
+            ..Self::default()
+        }
+    }
+
     /// Appends a face given by its position indices.
     pub fn push_face(&mut self, corners: &[u32]) {
         if self.offsets.is_empty() {

@@ -81,12 +81,7 @@ pub fn triangulate(positions: &[[f32; 3]], polygon: &[u32], out: &mut Vec<[u32; 
 /// assert_eq!((triangles.face_count(), split), (12, 6));
 /// ```
 pub fn triangulate_soup(soup: &Soup) -> (Soup, usize) {
-    let mut result = Soup {
-        positions: soup.positions.clone(),
-        uvs: soup.uvs.clone(),
-        colors: soup.colors.clone(),
-        ..Soup::default()
-    };
+    let mut result = soup.vertices_only();
     let mut triangles = Vec::new();
     let mut split = 0;
     for f in 0..soup.face_count() {

@@ -140,6 +140,21 @@ fn refused_in_one_sentence() {
     assert!(matches!(Mesh::build(&soup, Weld::Off), Err(TopologyError::Inconsistent { .. })));
 }
 
+#[test]
+fn parts_that_touch_stay_apart_whatever_happens_to_their_faces() {
+    // Two unit squares of two objects, one on top of the other's edge.
+    let mut positions = square();
+    positions.truncate(4);
+    positions.extend([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    let mut soup = Soup::from_faces(positions, &[[0, 1, 2, 3], [4, 5, 6, 7]]);
+    let parts = |s: &Soup| Mesh::build(s, Weld::Exact).unwrap().0.stats().components;
+    assert_eq!(parts(&soup), 1);
+    soup.parts = vec![0, 0, 0, 0, 1, 1, 1, 1];
+    let (triangles, _) = limn_mesh::triangulate_soup(&soup);
+    let (quads, _) = limn_mesh::pair::pair_triangles(&triangles);
+    assert_eq!([&soup, &triangles, &quads].map(parts), [2, 2, 2]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
