@@ -85,7 +85,7 @@ fn wasm(filter: Option<&str>, tally: &mut Tally) -> Result<()> {
     for name in ON_WASM {
         command.args(["--package", name]);
     }
-    command.args(["--profile", "serve", "--lib", "--tests", "--no-fail-fast"]).args(filter);
+    command.args(["--lib", "--tests", "--no-fail-fast"]).args(filter);
     tally.rust("tests as WebAssembly", &mut command)?;
     if filter.is_none_or(|filter| "hashes_of_refined_models".contains(filter)) {
         same_bits(tally)?;
@@ -106,14 +106,14 @@ pub fn wasi(subcommand: &str) -> Command {
 /// Compares what `crates/mesh/tests/bits.rs` prints natively and as WebAssembly.
 fn same_bits(tally: &mut Tally) -> Result<()> {
     say("the same bits natively and as WebAssembly");
-    let lines = |mut command: Command, profile: &[&str]| -> Result<Vec<String>> {
-        command.args(["--quiet", "--package", "limn-mesh", "--test", "bits"]).args(profile).args(["--", "--nocapture"]);
+    let lines = |mut command: Command| -> Result<Vec<String>> {
+        command.args(["--quiet", "--package", "limn-mesh", "--test", "bits", "--", "--nocapture"]);
         let output = process::output(&mut command)?;
         Ok(output.lines().filter_map(|line| line.find("bits ").map(|at| line[at..].to_owned())).collect())
     };
     let mut native = process::cargo();
     native.arg("test");
-    let (native, wasm) = (lines(native, &[])?, lines(wasi("test"), &["--profile", "serve"])?);
+    let (native, wasm) = (lines(native)?, lines(wasi("test"))?);
     let differing: Vec<_> = native.iter().zip(&wasm).filter(|(a, b)| a != b).collect();
     if !native.is_empty() && native.len() == wasm.len() && differing.is_empty() {
         println!("{} results have the same bits", native.len());
