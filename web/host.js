@@ -20,6 +20,8 @@
 const SLICE = 8;
 /** The most that is read from an address, in bytes. */
 const MOST_FETCHED = 1 << 30;
+/** Files smaller than this are read before anybody could wonder, in bytes. */
+const TALKED_ABOUT = 3_000_000;
 /** Larger pictures are made smaller while they are decoded: the longest side in pixels. */
 const MOST_PIXELS = 4096;
 
@@ -36,6 +38,8 @@ export function createHost(post) {
   let working = false;
   let framing = false;
   let drawn = false;
+  /** Counts what was asked to be opened: an answer to an older wish is dropped. */
+  let asked = 0;
   const turns = new MessageChannel();
 
   /** @param {unknown} error */
@@ -197,10 +201,15 @@ export function createHost(post) {
       case "open":
       case "reload": {
         const again = message.type === "reload";
-        if (message.files[0]) post({ type: "progress", what: `Reading ${message.files[0].name}`, done: -1, cancel: false });
+        const mine = (asked += 1);
+        const size = message.files.reduce((sum, { file }) => sum + file.size, 0);
+        if (size > TALKED_ABOUT) post({ type: "progress", what: `Reading ${message.files[0]?.name}`, done: -1, cancel: true });
         void read(message.files).then(({ names, bytes, failed }) => {
+          // Cancelled, or something else was dropped since.
+          if (mine !== asked) return;
           if (failed) post({ type: "card", card: { id: "read", kind: "error", title: `${failed} could not be read`, lines: ["The browser gave no bytes: it may have moved or changed; drop it again."], ask: "" } });
           enter((e) => e.open(names, bytes, again));
+          if (size > TALKED_ABOUT) post({ type: "progress", what: "", done: 0, cancel: false });
         });
         break;
       }
@@ -222,6 +231,8 @@ export function createHost(post) {
         enter((e) => e.theme(message.theme));
         break;
       case "cancel":
+        asked += 1;
+        post({ type: "progress", what: "", done: 0, cancel: false });
         enter((e) => e.cancel());
         post({ type: "pong" });
         break;

@@ -105,7 +105,7 @@ function receive(message) {
       break;
     case "log":
       panel.log(message);
-      if (!message.ok && !panel.shown) cards.show({ id: "command", kind: "error", title: message.command, lines: [message.text], ask: "" });
+      if (!message.ok && !panel.listening) cards.show({ id: "command", kind: "error", title: message.command, lines: [message.text], ask: "" });
       break;
     case "file":
       save(message);

@@ -62,6 +62,11 @@ export class Panel {
     return !this.#root.hidden;
   }
 
+  /** Whether a line in the console would be seen. */
+  get listening() {
+    return this.shown && !byId("pane-console").hidden;
+  }
+
   /** @param {Tab} tab */
   open(tab) {
     for (const other of TABS) {
@@ -178,7 +183,7 @@ export class Panel {
   #help(hello) {
     /** @type {Map<string, Node[]>} */
     const groups = new Map();
-    for (const key of hello.keys) {
+    for (const key of hello.keys.filter((k) => k.label)) {
       const rows = groups.get(key.group) ?? [];
       rows.push(el("dt", {}, ...spell(key).map((part) => el("kbd", {}, part))), el("dd", {}, key.label));
       groups.set(key.group, rows);

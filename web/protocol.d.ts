@@ -105,6 +105,7 @@ export interface Key {
   mod: boolean;
   /** Which heading it stands under in the help. */
   group: string;
+  /** Empty for keys that another one's line in the help speaks for. */
   label: string;
   command: string;
   page: "" | "open" | "help" | "copy" | "panel" | "theme" | "console" | "escape";

@@ -97,7 +97,8 @@ export class Supervisor {
     if (message.type === "cancel" && !this.#cancel) {
       this.#cancel = window.setTimeout(() => {
         this.#cancel = 0;
-        this.#lost("it did not stop when it was asked to");
+        // What the visitor wanted: nothing needs to be explained.
+        this.#replace(this.#settled || location.hash, "");
       }, CANCEL_PATIENCE);
     }
     if (this.engine) this.engine.postMessage(message);

@@ -55,6 +55,11 @@ impl Viewport {
         Viewport { size, min: Vec2::new(x0, y0), max: Vec2::new(x1, y1) }
     }
 
+    /// The viewport on the way from `self` (t = 0) to `to` (t = 1).
+    pub fn blend(&self, to: &Viewport, t: f32) -> Viewport {
+        Viewport { size: to.size, min: self.min.lerp(to.min, t), max: self.max.lerp(to.max, t) }
+    }
+
     /// Width by height of the free part.
     pub fn aspect(&self) -> f32 {
         let s = self.max - self.min;

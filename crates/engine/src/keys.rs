@@ -18,7 +18,7 @@ pub struct Key {
     pub modifier: bool,
     /// Its heading in the help.
     pub group: &'static str,
-    /// What it does.
+    /// What it does; empty for keys that another one's line in the help speaks for.
     pub label: &'static str,
     /// What it sends; empty if it is the page's.
     pub command: &'static str,
@@ -39,7 +39,10 @@ pub fn keys() -> Vec<Key> {
     let mut all = Vec::new();
     let mut add = |text: &str, key: Key| all.push(Key { key: text.to_owned(), ..key });
     for (i, command) in LEVELS.into_iter().enumerate() {
-        add(&i.to_string(), key("Levels", if i == 0 { "Level 0: the model itself" } else { "Level" }, command));
+        add(
+            &i.to_string(),
+            key("Levels", if i == 0 { "Level 0, the model itself; 1 to 9 likewise" } else { "" }, command),
+        );
     }
     add("arrowright", key("Levels", "Next level", "step 1"));
     add("arrowleft", key("Levels", "Level before", "step -1"));
@@ -53,20 +56,20 @@ pub fn keys() -> Vec<Key> {
     add("x", key("View", "From the right", "view camera=right"));
     add("y", key("View", "From the front", "view camera=front"));
     add("z", key("View", "From the top", "view camera=top"));
-    for (text, command) in [
-        ("arrowleft", "turn -15 0"),
-        ("arrowright", "turn 15 0"),
-        ("arrowup", "turn 0 15"),
-        ("arrowdown", "turn 0 -15"),
+    for (text, label, command) in [
+        ("arrowleft", "Turn the model; likewise the other arrows", "turn -15 0"),
+        ("arrowright", "", "turn 15 0"),
+        ("arrowup", "", "turn 0 15"),
+        ("arrowdown", "", "turn 0 -15"),
     ] {
-        add(text, Key { shift: true, ..key("View", "Turn the model", command) });
+        add(text, Key { shift: true, ..key("View", label, command) });
     }
     add("+", key("View", "Closer", "zoom 0.8"));
-    add("=", key("View", "Closer", "zoom 0.8"));
+    add("=", key("View", "", "zoom 0.8"));
     add("-", key("View", "Farther", "zoom 1.25"));
     add("z", Key { modifier: true, ..key("Document", "Undo", "undo") });
     add("z", Key { modifier: true, shift: true, ..key("Document", "Redo", "redo") });
-    add("y", Key { modifier: true, ..key("Document", "Redo", "redo") });
+    add("y", Key { modifier: true, ..key("Document", "", "redo") });
     for (text, label, page) in [
         ("o", "Open files", "open"),
         ("l", "Copy link", "copy"),

@@ -18,10 +18,10 @@ pub fn pick(refined: &Refined, ray: &Ray, visible: impl Fn(u32) -> bool) -> Opti
         let a = at(*first);
         for pair in rest.windows(2) {
             let &[b, c] = pair else { continue };
-            if let Some(t) = hit(ray, a, at(b), at(c)) {
-                if t < nearest && visible(f as u32) {
-                    nearest = t;
-                }
+            if let Some(t) = hit(ray, a, at(b), at(c)).filter(|t| *t < nearest)
+                && visible(f as u32)
+            {
+                nearest = t;
             }
         }
     }

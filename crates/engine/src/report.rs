@@ -56,6 +56,12 @@ pub fn ruler(document: &Document) -> Vec<Level> {
     levels
 }
 
+/// A length with four digits that count: "0.9531", "1412", "2.1e-7".
+fn four_digits(x: f32) -> String {
+    let rounded: f32 = format!("{x:.3e}").parse().unwrap_or(x);
+    if rounded != 0.0 && !(1e-4..1e6).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
 /// What a walk over the mesh tells.
 pub struct Facts {
     /// Loops, components, genus, bounds.
@@ -125,7 +131,7 @@ impl Facts {
         let Some(mesh) = document.mesh() else { return Vec::new() };
         let (counts, s) = (mesh.counts(), &self.stats);
         let [low, high] = s.bounds;
-        let side = |i: usize| high[i] - low[i];
+        let side = |i: usize| four_digits(high[i] - low[i]);
         let mut rows = vec![
             Fact { label: "Vertices", value: grouped(counts.vertices) },
             Fact { label: "Edges", value: grouped(counts.edges) },
@@ -193,6 +199,12 @@ mod tests {
         let row = |label: &str| rows.iter().find(|r| r.label == label).unwrap().value.clone();
         assert_eq!(row("Faces"), "53 quads, 1 hexagon");
         assert_eq!(row("Edges"), "109");
+    }
+
+    #[test]
+    fn lengths_have_four_digits() {
+        let text = [0.953_122, 1_412.316_2, 2.1e-7, 0.0, 123_456.0].map(four_digits);
+        assert_eq!(text, ["0.9531", "1412", "2.1e-7", "0", "123500"]);
     }
 
     #[test]

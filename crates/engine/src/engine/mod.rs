@@ -30,7 +30,7 @@ use crate::{controls, keys};
 
 /// The memory that refining may take for each gigabyte that the device has, in bytes; browsers say 8 at most.
 const BUDGET_A_GIGABYTE: f64 = 96e6;
-/// The number of milliseconds that a camera takes from one named view to another.
+/// How long a camera takes from one named view to another, and the picture to make room for a panel: milliseconds.
 const TWEEN: f64 = 240.0;
 
 /// What became stale.
@@ -44,11 +44,19 @@ struct Dirty {
     camera: bool,
 }
 
-/// A camera on its way.
-struct Tween {
-    from: Camera,
-    to: Camera,
+/// Something on its way.
+struct Tween<T> {
+    from: T,
+    to: T,
     start: f64,
+}
+
+impl<T> Tween<T> {
+    /// How far it is, 0..=1, slow at both ends.
+    fn at(&self, now: f64) -> f32 {
+        let t = ((now - self.start) / TWEEN).clamp(0.0, 1.0) as f32;
+        t * t * (3.0 - 2.0 * t)
+    }
 }
 
 /// What the facts, parts and cage on the GPU were made of.
@@ -72,15 +80,16 @@ pub struct Engine {
     dark: bool,
     calm: bool,
     dirty: Dirty,
-    tween: Option<Tween>,
+    tween: Option<Tween<Camera>>,
+    making_room: Option<Tween<Viewport>>,
     opening: Option<open::Opening>,
     /// Counts what was asked of the surroundings: late answers are told by it.
     turn: u32,
     known: Option<Known>,
     making: Option<Making>,
     shown: Option<Made>,
-    /// The model whose materials and pictures are on the GPU.
-    painted: Option<Arc<limn_formats::Model>>,
+    /// The model whose materials and pictures are on the GPU, and the turn in which its pictures are decoded.
+    painted: Option<(Arc<limn_formats::Model>, u32)>,
     /// The mesh whose cage is on the GPU, and the level whose points are.
     caged: Option<Arc<Mesh>>,
     dotted: Option<Arc<limn_mesh::Refined>>,
@@ -136,6 +145,7 @@ impl Engine {
             calm,
             dirty: Dirty::default(),
             tween: None,
+            making_room: None,
             opening: None,
             turn: 0,
             known: None,
@@ -215,16 +225,15 @@ impl Engine {
                 &expanded
             }
             Some(Short::Turn(degrees)) => {
-                let (bounds, aspect) = (self.bounds(), self.document.aspect());
                 let mut camera = self.aim();
                 camera.orbit(Vec2::new(-degrees.x, degrees.y) / 180.0);
-                return self.go(camera, bounds, aspect);
+                return self.go(camera);
             }
             Some(Short::Zoom(factor)) => {
                 let (bounds, aspect) = (self.bounds(), self.document.aspect());
                 let mut camera = self.aim();
                 camera.dolly(factor, Vec2::ZERO, aspect, &bounds);
-                return self.go(camera, bounds, aspect);
+                return self.go(camera);
             }
             None => text,
         };
@@ -256,17 +265,29 @@ impl Engine {
             };
             if let Some(point) = pick(&made.refined, &ray, visible) {
                 camera.set_pivot(point);
-                self.go(camera, bounds, viewport.aspect());
+                self.go(camera);
             }
         }
     }
 
     /// The canvas has another size (device pixels), or the page covers other parts of it (CSS pixels).
     pub fn resize(&mut self, width: u32, height: u32, pixel_ratio: f32, insets: &[f32]) {
-        if self.screen.size() != [width, height] {
+        let before = self.viewport;
+        let resized = self.screen.size() != [width, height];
+        if resized {
             self.screen.resize(self.renderer.gpu(), width, height);
         }
         self.measure(width, height, pixel_ratio, insets);
+        if !resized
+            && !self.calm
+            && self.shown.is_some()
+            && before != self.viewport
+            && before.size == self.viewport.size
+        {
+            let tween = Tween { from: before, to: self.viewport, start: self.clock.now() };
+            self.take_viewport(before);
+            self.making_room = Some(tween);
+        }
         self.dirty.picture = true;
         self.dirty.camera = true;
     }
@@ -297,7 +318,8 @@ impl Engine {
 
     /// Whether `frame` has something to do.
     pub fn wants_frame(&self) -> bool {
-        self.dirty.picture || self.dirty.state || self.dirty.camera || self.tween.is_some()
+        let Dirty { picture, state, camera } = self.dirty;
+        picture || state || camera || self.tween.is_some() || self.making_room.is_some()
     }
 
     /// Draws and posts the state, each if it is stale. True if a model was drawn.
@@ -346,9 +368,8 @@ impl Engine {
             Outcome::View => {
                 let to = self.document.view().camera;
                 if to != camera && self.tween.is_none() {
-                    let (bounds, aspect) = (self.bounds(), self.document.aspect());
                     self.document.view_mut().camera = camera;
-                    self.go(to, bounds, aspect);
+                    self.go(to);
                 } else {
                     self.tween = None;
                 }
@@ -382,7 +403,7 @@ impl Engine {
     }
 
     /// Moves the camera there, smoothly unless motion is unwelcome.
-    fn go(&mut self, to: Camera, bounds: Bounds, aspect: f32) {
+    fn go(&mut self, to: Camera) {
         let from = self.document.view().camera;
         if self.calm || self.shown.is_none() || from.projection != to.projection || from.up != to.up {
             self.tween = None;
@@ -390,8 +411,6 @@ impl Engine {
         } else {
             self.tween = Some(Tween { from, to, start: self.clock.now() });
         }
-        // Named views are framed for the viewport that there is.
-        let _ = (bounds, aspect);
         self.dirty.picture = true;
         self.dirty.state = true;
     }
@@ -414,9 +433,14 @@ impl Engine {
         self.pixel_ratio = if pixel_ratio.is_finite() { pixel_ratio.clamp(0.25, 8.0) } else { 1.0 };
         let inset = |i: usize| insets.get(i).copied().unwrap_or(0.0);
         let size = Vec2::new(width as f32, height as f32) / self.pixel_ratio;
-        self.viewport = Viewport::new(size, [inset(0), inset(1), inset(2), inset(3)]);
         self.finish_tween();
-        self.document.set_aspect(self.viewport.aspect());
+        self.making_room = None;
+        self.take_viewport(Viewport::new(size, [inset(0), inset(1), inset(2), inset(3)]));
+    }
+
+    fn take_viewport(&mut self, viewport: Viewport) {
+        self.viewport = viewport;
+        self.document.set_aspect(viewport.aspect());
     }
 
     /// Which of the model's groups are not drawn, by number.

@@ -23,8 +23,6 @@ use crate::protocol::{Card, Message};
 
 /// What a first visit shows.
 const FIRST: &str = "#1;open+builtin:creature;scheme+catmull-clark;level+2";
-/// Bytes that reading may build, in multiples of the refinement budget.
-const READ_SHARE: u64 = 1;
 /// The endings of files that are models, the most telling first.
 const MODELS: [&str; 3] = [".gltf", ".glb", ".obj"];
 
@@ -259,7 +257,8 @@ impl Engine {
             Source::Url(_) => asked.clone(),
             _ => Source::File { name: name.clone(), stamp },
         };
-        let limits = Limits { bytes: Limits::default().bytes.min(document.budget().saturating_mul(READ_SHARE)) };
+        // What is read has to leave room for what is made of it.
+        let limits = Limits { bytes: Limits::default().bytes.min(document.budget()) };
         let title = |name: &str| format!("{} could not be opened", name.rsplit('/').next().unwrap_or(name));
         let (model, warnings) = match read(&name, &bytes, &files, &limits) {
             Ok(read) => read,
@@ -350,7 +349,7 @@ impl Engine {
     /// Puts the model's materials on the GPU and has its pictures decoded.
     pub(super) fn paint(&mut self) {
         let Some(model) = self.document.model().cloned() else { return };
-        if self.painted.as_ref().is_some_and(|p| Arc::ptr_eq(p, &model)) {
+        if self.painted.as_ref().is_some_and(|(p, _)| Arc::ptr_eq(p, &model)) {
             return;
         }
         self.turn += 1;
@@ -370,13 +369,12 @@ impl Engine {
             ];
             self.post.bytes("decode", &fields, &image.bytes);
         }
-        self.painted = Some(model);
+        self.painted = Some((model, self.turn));
     }
 
     /// A picture came back.
     pub(super) fn take_picture(&mut self, turn: u32, index: u32, bitmap: Option<web_sys::ImageBitmap>) {
-        // Nothing else counts turns between paint and its answers but a newer paint, or an address that is fetched.
-        let Some(model) = self.painted.clone().filter(|_| turn <= self.turn) else { return };
+        let Some((model, _)) = self.painted.clone().filter(|(_, painted)| *painted == turn) else { return };
         let Some(image) = model.images.get(index as usize) else { return };
         let result = match bitmap {
             Some(bitmap) => self

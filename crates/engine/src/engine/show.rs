@@ -1,5 +1,7 @@
 //! What goes out: frames, the state message, and files.
 
+use std::sync::Arc;
+
 use glam::{Mat4, Vec2, Vec3};
 use limn_document::Source;
 use limn_document::camera::{Bounds, UpAxis};
@@ -7,8 +9,8 @@ use limn_document::view::{Background, Edges, Shading};
 use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
 
+use super::Engine;
 use super::open::sentence;
-use super::{Engine, TWEEN};
 use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
 use crate::{controls, report};
 
@@ -21,10 +23,18 @@ const CAMERA_PAUSE: f64 = 200.0;
 impl Engine {
     pub(super) fn show_frame(&mut self) -> bool {
         let now = self.clock.now();
+        if let Some(room) = &self.making_room {
+            let (t, from, to) = (room.at(now), room.from, room.to);
+            self.take_viewport(from.blend(&to, t));
+            self.dirty.picture = true;
+            if t >= 1.0 {
+                self.making_room = None;
+                self.dirty.state = true;
+            }
+        }
         if let Some(tween) = &self.tween {
-            let t = ((now - tween.start) / TWEEN).clamp(0.0, 1.0) as f32;
-            // Slow at both ends.
-            let camera = tween.from.blend(&tween.to, t * t * (3.0 - 2.0 * t));
+            let t = tween.at(now);
+            let camera = tween.from.blend(&tween.to, t);
             self.document.view_mut().camera = camera;
             self.dirty.picture = true;
             if t >= 1.0 {
@@ -32,24 +42,18 @@ impl Engine {
                 self.dirty.state = true;
             }
         }
-        // A model that is not there yet is looked at with its own camera: until it is, the last picture stays.
-        let stale = self.making.is_some()
-            && match (&self.shown, self.document.mesh()) {
-                (Some(made), Some(_)) => self.document.model().is_some_and(|m| {
-                    self.painted.as_ref().is_some_and(|p| !std::sync::Arc::ptr_eq(p, m)) && made.bytes() > 0
-                }),
-                _ => true,
-            };
+        // The camera is the document's; while another model is being made ready for it, the last picture stays.
+        let other = match (&self.painted, self.document.model()) {
+            (Some((painted, _)), Some(model)) => !Arc::ptr_eq(painted, model),
+            _ => true,
+        };
+        let waiting = self.making.is_some() && other;
         let mut drawn = false;
-        if self.dirty.picture && !stale {
-            self.dirty.picture = false;
+        if std::mem::take(&mut self.dirty.picture) && !waiting {
             drawn = self.draw() && self.shown.is_some();
-            let errors = self.renderer.gpu().take_errors();
-            if let Some(first) = errors.first() {
+            if let Some(first) = self.renderer.gpu().take_errors().first() {
                 self.trouble(first);
             }
-        } else if stale {
-            self.dirty.picture = false;
         }
         let camera_due = self.dirty.camera && now - self.posted > CAMERA_PAUSE && self.tween.is_none();
         if self.dirty.state || camera_due {
@@ -163,7 +167,7 @@ impl Engine {
             levels: report::ruler(document),
             shown,
             times: self.times,
-            busy: self.making.is_some() || self.told.is_some() || self.tween.is_some(),
+            busy: self.making.is_some() || self.told.is_some() || self.tween.is_some() || self.making_room.is_some(),
             values: controls::values(document),
             disabled: controls::disabled(document, facts.is_some_and(|f| f.stats.boundary_loops > 0)),
             groups: self.groups(),
