@@ -19,6 +19,9 @@ use crate::target::texture_group;
 
 const SIDE: u32 = 256;
 
+/// The ground is a grid of 24 by 24 cells (ground.wgsl says why).
+pub(crate) const GROUND_VERTICES: u32 = 24 * 24 * 6;
+
 /// Where the map lies in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Placement {

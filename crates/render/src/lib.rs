@@ -35,6 +35,7 @@ mod style;
 pub mod surface;
 mod target;
 mod uniform;
+mod upload;
 
 pub use wgpu;
 
@@ -45,7 +46,8 @@ pub use material::{Material, TextureData};
 pub use renderer::Renderer;
 pub use screen::{Screen, ScreenFrame};
 pub use style::{Background, Camera, Edges, Frame, Ground, Shading, Style};
-pub use surface::{Bounds, Faces, Part, Surface, SurfaceData, Upload};
+pub use surface::{Bounds, Faces, Part, Surface, SurfaceData};
+pub use upload::Upload;
 
 /// The WGSL modules by name, each as it is handed to the device (the shared parts already joined on).
 ///

@@ -235,7 +235,7 @@ impl Pipelines {
             bind_group_layouts: groups,
             immediate_size: 0,
         });
-        let strip = matches!(kind, Kind::Line | Kind::LineHidden | Kind::Point(_) | Kind::Ground);
+        let strip = matches!(kind, Kind::Line | Kind::LineHidden | Kind::Point(_));
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(fragment),
             layout: Some(&pipeline_layout),

@@ -4,16 +4,16 @@
 //! the final pass to the caller's view. Nothing here decides when to draw. The CPU's share depends on the number
 //! of parts and buffers, never on the number of faces.
 
-use crate::ground::{Placement, Shadow};
+use crate::ground::{GROUND_VERTICES, Placement, Shadow};
 use crate::image::Pixels;
 use crate::material::{Material, Materials, TextureData};
 use crate::overlay::Instances;
 use crate::pipelines::{Kind, Pipelines, Vertices};
 use crate::style::{Edges, Frame};
-use crate::surface::{Bounds, Layout, Run, Surface, SurfaceData, Upload, buffer};
+use crate::surface::{Bounds, Layout, Run, Surface, SurfaceData, buffer};
 use crate::target::Target;
 use crate::uniform::{Content, Globals, Viewer, globals};
-use crate::{Error, Gpu};
+use crate::{Error, Gpu, Upload};
 
 /// One draw of the surface: a stretch of a chunk with one material.
 struct Stretch {
@@ -313,7 +313,7 @@ impl Renderer {
         {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, shadow.group(), &[]);
-            pass.draw(0..4, 0..1);
+            pass.draw(0..GROUND_VERTICES, 0..1);
         }
         let overlays = [
             (cage && style.hidden > 0.0, Kind::LineHidden, &self.cage),

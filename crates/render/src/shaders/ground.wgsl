@@ -1,4 +1,6 @@
-// The ground's quad: nothing but the shadow, black with the map's opacity, fading out towards the map's rim.
+// The ground: nothing but the shadow, black with the map's opacity, fading out towards the map's rim. It reaches farther
+// than the model, and near and far planes lie close around that: so it is a grid of cells whose vertices are clamped to
+// the two planes, rather than one quad that they would cut.
 
 @group(1) @binding(0) var shadow: texture_2d<f32>;
 @group(1) @binding(1) var bilinear: sampler;
@@ -10,10 +12,14 @@ struct Place {
 
 @vertex
 fn vs_ground(@builtin(vertex_index) index: u32) -> Place {
-    let c = vec2(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
+    let k = index % 6u;
+    let cell = index / 6u;
+    let corner = vec2(u32(k == 1u || k == 2u || k == 4u), u32(k == 2u || k >= 4u));
+    let c = vec2<f32>(vec2(cell % 24u, cell / 24u) + corner) / 12.0 - 1.0;
     var out: Place;
     out.at = c;
     out.position = g.view_proj * vec4(g.ground.xyz + c.x * g.ground_x.xyz + c.y * g.ground_y.xyz, 1.0);
+    out.position.z = clamp(out.position.z, 0.0, max(out.position.w, 0.0));
     return out;
 }
 
