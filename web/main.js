@@ -49,12 +49,15 @@ let exact = null;
 const size = () => {
   const scale = devicePixelRatio || 1;
   const box = stage.getBoundingClientRect();
-  const [width, height] = exact ?? [Math.round(box.width * scale), Math.round(box.height * scale)];
-  const dock = byId("dock").getBoundingClientRect();
-  const panel = byId("panel").getBoundingClientRect();
-  const sheet = panel.width > box.width * 0.8;
-  const right = panel.width && !sheet ? box.right - panel.left : 0;
-  const bottom = panel.width && sheet ? box.bottom - panel.top : box.bottom - dock.top;
+  const near = [Math.round(box.width * scale), Math.round(box.height * scale)];
+  // An emulated screen has another ratio than the device that it is shown on.
+  const sound = exact?.every((side, i) => Math.abs(side - (near[i] ?? 0)) <= 1);
+  const [width = 1, height = 1] = (sound && exact) || near;
+  // Where things will be when they have stopped sliding in: offsets know nothing of animations.
+  const [dock, panel] = [byId("dock"), byId("panel")];
+  const sheet = panel.offsetWidth > box.width * 0.8;
+  const right = panel.hidden || sheet ? 0 : box.width - panel.offsetLeft;
+  const bottom = box.height - (!panel.hidden && sheet ? panel : dock).offsetTop;
   return { width: Math.max(1, width), height: Math.max(1, height), scale, insets: [TOP, right, Math.max(0, bottom - OVERLAP), 0] };
 };
 
