@@ -250,11 +250,11 @@ impl Engine {
     pub fn input(&mut self, batch: &[f32]) {
         let (bounds, viewport) = (self.bounds(), self.viewport);
         self.finish_tween();
+        let held = self.gestures.held();
         let effect = self.gestures.apply(batch, &viewport, &mut self.document.view_mut().camera, &bounds);
-        if effect.moved {
-            self.dirty.picture = true;
-            self.dirty.camera = true;
-        }
+        self.dirty.picture |= effect.moved;
+        // Released, the camera comes to rest.
+        self.dirty.camera |= effect.moved || held && !self.gestures.held();
         if let (Some(pointer), Some(made)) = (effect.pivot, &self.shown) {
             let mut camera = self.document.view().camera;
             let ray = camera.ray(pointer, viewport.aspect());
@@ -404,6 +404,7 @@ impl Engine {
 
     /// Moves the camera there, smoothly unless motion is unwelcome.
     fn go(&mut self, to: Camera) {
+        let to = if to.standard.is_some() { to } else { to.quantised() };
         let from = self.document.view().camera;
         if self.calm || self.shown.is_none() || from.projection != to.projection || from.up != to.up {
             self.tween = None;

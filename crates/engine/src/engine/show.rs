@@ -42,6 +42,14 @@ impl Engine {
                 self.dirty.state = true;
             }
         }
+        let camera_due = self.dirty.camera && now - self.posted > CAMERA_PAUSE && self.tween.is_none();
+        if camera_due && !self.gestures.held() {
+            // At rest the camera is what a link says of it, so that whoever follows the link sees the same pixels.
+            let camera = &mut self.document.view_mut().camera;
+            let rounded = camera.quantised();
+            self.dirty.picture |= rounded != *camera;
+            *camera = rounded;
+        }
         // The camera is the document's; while another model is being made ready for it, the last picture stays.
         let other = match (&self.painted, self.document.model()) {
             (Some((painted, _)), Some(model)) => !Arc::ptr_eq(painted, model),
@@ -55,10 +63,9 @@ impl Engine {
                 self.trouble(first);
             }
         }
-        let camera_due = self.dirty.camera && now - self.posted > CAMERA_PAUSE && self.tween.is_none();
         if self.dirty.state || camera_due {
             self.dirty.state = false;
-            self.dirty.camera = false;
+            self.dirty.camera &= !camera_due;
             self.posted = now;
             let state = self.state();
             self.post.send(&state);
