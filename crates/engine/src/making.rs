@@ -236,6 +236,8 @@ impl Making {
                         }
                     }
                 })?;
+                // Hands over what was written: left to pile up, it would hold up the next frame for seconds.
+                renderer.gpu().queue.submit(std::iter::empty());
                 if done {
                     self.spent[1] += clock() - start;
                     return Ok(Step::Done(made, upload.finish()));
