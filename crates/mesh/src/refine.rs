@@ -17,7 +17,7 @@ use crate::scheme::{Boundary, Entry, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Counts};
-use crate::track::{Owned, Stage, Track, on, weigh};
+use crate::track::{Owned, Stage, Track, weigh};
 use std::sync::Arc;
 
 /// What to refine by, and how far.
@@ -86,7 +86,7 @@ pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::with_capacity(digits.len() * 4 / 3);
     for (i, d) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
             out.push(',');
         }
         out.push(d);
@@ -299,11 +299,11 @@ pub fn evaluate<const N: usize>(
     for step in 0..plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
         inspect(&level);
-        let mut new = vec![[0.0; N]; on!(&level, c => split.children(*c)) as usize];
+        let mut new = vec![[0.0; N]; split.children(&level) as usize];
         let mut take = |child: u32, row: &[(Source, f64)]| {
             new[child as usize] = weigh(row, |s| match s {
-                Source::Old(v) => old[v as usize],
-                Source::New(v) => new[v as usize],
+                Source::Vertex(v) => old[v as usize],
+                Source::Child(v) => new[v as usize],
             });
         };
         plan.scheme.rows((&level, split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });

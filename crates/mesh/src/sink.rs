@@ -5,9 +5,9 @@
 //! closure (colours, texture coordinates, f64, tests; later the GPU's tables and the reverse).
 //!
 //! ```text
-//!   scheme.rules ──> sink.pass(first child, count, |origin, row| row.old(v, w) ...)
+//!   scheme.rules ──> sink.pass(first child, count, |origin, row| row.vertex(v, w) ...)
 //!                       ├── Eval    sum += w * point
-//!                       └── Record  [(Old v, w), (New c, w) ...]
+//!                       └── Record  [(Vertex v, w), (Child c, w) ...]
 //! ```
 //!
 //! Both stop after a quota of rows and resume where they stopped ([`Cursor`]), which is what lets a long refinement yield.
@@ -15,9 +15,9 @@
 /// One new point's weights. They add up to one.
 pub trait Row {
     /// Adds `weight` times vertex `v` of the level being refined.
-    fn old(&mut self, v: u32, weight: f64);
+    fn vertex(&mut self, v: u32, weight: f64);
     /// Adds `weight` times child `c`, which an *earlier pass* gave.
-    fn new(&mut self, c: u32, weight: f64);
+    fn child(&mut self, c: u32, weight: f64);
     /// Multiplies everything added so far.
     fn scale(&mut self, factor: f64);
 }
@@ -95,12 +95,12 @@ pub struct Sum<'r> {
 
 impl Row for Sum<'_> {
     #[inline(always)]
-    fn old(&mut self, v: u32, weight: f64) {
+    fn vertex(&mut self, v: u32, weight: f64) {
         let (p, w) = (self.old[v as usize], weight as f32);
         self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
     }
     #[inline(always)]
-    fn new(&mut self, c: u32, weight: f64) {
+    fn child(&mut self, c: u32, weight: f64) {
         let (p, w) = (self.new[c as usize], weight as f32);
         self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
     }
@@ -127,21 +127,24 @@ impl Sink for Eval<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A vertex of the level being refined.
-    Old(u32),
+    Vertex(u32),
     /// A child of an earlier pass.
-    New(u32),
+    Child(u32),
 }
+
+/// Is given a child and its weights.
+pub type TakeRow<'a> = dyn FnMut(u32, &[(Source, f64)]) + 'a;
 
 /// Hands every row to a closure as it is stated.
 pub struct Record<'a> {
-    take: &'a mut dyn FnMut(u32, &[(Source, f64)]),
+    take: &'a mut TakeRow<'a>,
     row: Entries,
     slice: Slice<'a>,
 }
 
 impl<'a> Record<'a> {
     /// Calls `take(child, weights)` for at most `quota` rows from `cursor` on.
-    pub fn new(take: &'a mut dyn FnMut(u32, &[(Source, f64)]), cursor: &'a mut Cursor, quota: &'a mut usize) -> Self {
+    pub fn new(take: &'a mut TakeRow<'a>, cursor: &'a mut Cursor, quota: &'a mut usize) -> Self {
         Record { take, row: Entries::default(), slice: Slice { cursor, quota, seen: 0 } }
     }
 
@@ -156,11 +159,11 @@ impl<'a> Record<'a> {
 pub struct Entries(Vec<(Source, f64)>);
 
 impl Row for Entries {
-    fn old(&mut self, v: u32, weight: f64) {
-        self.0.push((Source::Old(v), weight));
+    fn vertex(&mut self, v: u32, weight: f64) {
+        self.0.push((Source::Vertex(v), weight));
     }
-    fn new(&mut self, c: u32, weight: f64) {
-        self.0.push((Source::New(c), weight));
+    fn child(&mut self, c: u32, weight: f64) {
+        self.0.push((Source::Child(c), weight));
     }
     fn scale(&mut self, factor: f64) {
         self.0.iter_mut().for_each(|(_, w)| *w *= factor);

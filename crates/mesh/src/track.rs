@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 use crate::refine::Plan;
 use crate::scheme::{Boundary, Tags};
 use crate::sink::{Cursor, Source};
-use crate::split::{Level, QuadLevel, Split, TriangleLevel};
+use crate::split::{Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
 
 /// Half-edges of a level between the first and the last.
@@ -22,23 +22,12 @@ pub(crate) enum Owned {
     Triangles(TriangleLevel),
 }
 
-/// Runs a statement with the connectivity behind a level, whatever its type.
-macro_rules! on {
-    ($level:expr, $c:ident => $body:expr) => {
-        match $level {
-            Level::Base($c) => $body,
-            Level::Quads($c) => $body,
-            Level::Triangles($c) => $body,
-        }
-    };
-}
-
 impl Owned {
     pub(crate) fn below(parent: &Level<'_>, split: Split) -> Owned {
-        on!(parent, c => match split {
-            Split::Quad => Owned::Quads(QuadLevel::below(*c)),
-            Split::Triangle => Owned::Triangles(TriangleLevel::below(*c)),
-        })
+        match split {
+            Split::Quad => Owned::Quads(QuadLevel::below(parent)),
+            Split::Triangle => Owned::Triangles(TriangleLevel::below(parent)),
+        }
     }
 
     pub(crate) fn view(&self) -> Level<'_> {
@@ -148,7 +137,7 @@ impl Track {
             } else {
                 Tags { boundary: plan.boundary, sharp: &mesh.sharp }
             };
-            let children = on!(&level, c => split.children(*c)) as usize;
+            let children = split.children(&level) as usize;
             match &mut self.stage {
                 Stage::Points(cursor) => {
                     zeroed(&mut self.new_points, children);
@@ -163,8 +152,8 @@ impl Track {
                     let (old, new) = (&self.wide, &mut self.new_wide);
                     let mut take = |child: u32, row: &[(Source, f64)]| {
                         let sum = weigh(row, |s| match s {
-                            Source::Old(v) => old[v as usize].map(f64::from),
-                            Source::New(v) => new[v as usize].map(f64::from),
+                            Source::Vertex(v) => old[v as usize].map(f64::from),
+                            Source::Child(v) => new[v as usize].map(f64::from),
                         });
                         new[child as usize] = sum.map(|x| x as f32);
                     };
@@ -232,5 +221,3 @@ pub(crate) fn weigh<const N: usize>(row: &[(Source, f64)], value: impl Fn(Source
     }
     sum
 }
-
-pub(crate) use on;

@@ -25,7 +25,8 @@ fn hashes_of_refined_models() {
                     let (mesh, _) = Mesh::build(soup, Weld::Off).ok()?;
                     refine(&Arc::new(mesh), plan, u64::MAX).ok()
                 });
-                let refined = refined.unwrap_or_else(|| panic!("{} does not refine under {}", shape.name, entry.info.id));
+                let refined =
+                    refined.unwrap_or_else(|| panic!("{} does not refine under {}", shape.name, entry.info.id));
                 assert!(refined.points.iter().flatten().all(|x| x.is_finite()), "{} {}", shape.name, entry.info.id);
                 let points = fnv(refined.points.iter().flatten());
                 let normals = fnv(refined.normals().iter().flatten());

@@ -7,7 +7,7 @@ use common::{build, cage, gallery};
 use limn_mesh::refine::evaluate;
 use limn_mesh::sink::Cursor;
 use limn_mesh::split::Level;
-use limn_mesh::topology::{Broken, validate};
+use limn_mesh::topology::validate;
 use limn_mesh::{Boundary, Connectivity, Entry, Job, Mesh, Plan, RefineError, SCHEMES, Soup, Weld, predict, refine};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -20,14 +20,6 @@ fn plans(mesh: &Mesh, level: u32) -> Vec<Plan> {
         .filter(takes)
         .flat_map(|scheme| boundaries.map(|boundary| Plan { scheme, boundary, level }))
         .collect()
-}
-
-fn check_level(level: &Level<'_>) -> Result<(), Broken> {
-    match level {
-        Level::Base(c) => validate(*c),
-        Level::Quads(c) => validate(*c),
-        Level::Triangles(c) => validate(*c),
-    }
 }
 
 fn exact(mesh: &Mesh) -> Vec<[f64; 3]> {
@@ -58,7 +50,7 @@ fn conforms(name: &str, mesh: &Arc<Mesh>) {
         let ones = vec![[1.0f64]; positions.len()];
         let mut depth = 0;
         let sums = evaluate(mesh, plan, &ones, |level| {
-            check_level(level).unwrap_or_else(|e| panic!("{what}, level {depth}: {e}"));
+            validate(level).unwrap_or_else(|e| panic!("{what}, level {depth}: {e}"));
             depth += 1;
         })
         .unwrap();
@@ -311,7 +303,7 @@ fn refused_with_the_numbers() {
     assert!(error.to_string().contains("more than 32-bit numbers can connect"), "{error}");
     let error = refine(&cube, plan("loop", 1), 1 << 30).unwrap_err();
     assert_eq!(error, RefineError::NeedsTriangles { scheme: "Loop", face: 0, corners: 4 });
-    assert_eq!(refine(&cube, plan("catmull-clark", u32::MAX), 1 << 30).unwrap_err().to_string().len() > 20, true);
+    assert!(refine(&cube, plan("catmull-clark", u32::MAX), 1 << 30).is_err());
     // Level 0 is what is already there: never refused.
     assert!(refine(&cube, plan("catmull-clark", 0), 0).is_ok());
 }

@@ -80,11 +80,11 @@ impl Polygons {
                 let (v, w) = (face[i % n], face[(i + 1) % n]);
                 edge[&(v.min(w), v.max(w))]
             };
-            for i in 0..n {
+            for (i, &v) in face.iter().enumerate() {
                 if triangles {
-                    faces.push(vec![face[i], e(i), e(i + n - 1)]);
+                    faces.push(vec![v, e(i), e(i + n - 1)]);
                 } else {
-                    faces.push(vec![face[i], e(i), self.points.len() + f, e(i + n - 1)]);
+                    faces.push(vec![v, e(i), self.points.len() + f, e(i + n - 1)]);
                 }
             }
             if triangles {

@@ -38,38 +38,38 @@ impl Scheme for CatmullClark {
             let corners = c.face_half_edges(f);
             let n = corners.len() as f64;
             for h in corners {
-                row.old(c.origin(h), 1.0);
+                row.vertex(c.origin(h), 1.0);
             }
             row.scale(1.0 / n);
         });
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
             let (a, b, twin) = (c.origin(h), c.origin(c.next(h)), c.twin(h));
-            row.old(a, 1.0);
-            row.old(b, 1.0);
+            row.vertex(a, 1.0);
+            row.vertex(b, 1.0);
             if is_boundary(twin) {
                 row.scale(0.5);
             } else {
-                row.new(face_point + c.face(h), 1.0);
-                row.new(face_point + c.face(twin), 1.0);
+                row.child(face_point + c.face(h), 1.0);
+                row.child(face_point + c.face(twin), 1.0);
                 row.scale(0.25);
             }
         });
         sink.pass(0, c.vertices(), |v, row| {
             if tags.is_sharp(c, v) {
-                row.old(v, 1.0);
+                row.vertex(v, 1.0);
             } else if let Some(arriving) = boundary_arrival(c, v) {
                 cubic_boundary(c, v, arriving, row);
             } else {
                 let mut n = 0u32;
                 c.turn(v, |h| {
-                    row.old(c.origin(c.next(h)), 1.0);
-                    row.new(face_point + c.face(h), 1.0);
+                    row.vertex(c.origin(c.next(h)), 1.0);
+                    row.child(face_point + c.face(h), 1.0);
                     n += 1;
                 });
                 let n = f64::from(n);
                 row.scale(1.0 / (n * n));
-                row.old(v, (n - 2.0) / n);
+                row.vertex(v, (n - 2.0) / n);
             }
         });
     }

@@ -40,16 +40,16 @@ impl Scheme for Linear {
                 let corners = c.face_half_edges(f);
                 let n = corners.len() as f64;
                 for h in corners {
-                    row.old(c.origin(h), 1.0);
+                    row.vertex(c.origin(h), 1.0);
                 }
                 row.scale(1.0 / n);
             });
         }
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            row.old(c.origin(h), 0.5);
-            row.old(c.origin(c.next(h)), 0.5);
+            row.vertex(c.origin(h), 0.5);
+            row.vertex(c.origin(c.next(h)), 0.5);
         });
-        sink.pass(0, c.vertices(), |v, row| row.old(v, 1.0));
+        sink.pass(0, c.vertices(), |v, row| row.vertex(v, 1.0));
     }
 }

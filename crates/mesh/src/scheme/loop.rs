@@ -54,29 +54,29 @@ impl Scheme for Loop {
             let twin = c.twin(h);
             let (a, b) = (c.origin(h), c.origin(c.next(h)));
             if is_boundary(twin) {
-                row.old(a, 0.5);
-                row.old(b, 0.5);
+                row.vertex(a, 0.5);
+                row.vertex(b, 0.5);
             } else {
-                row.old(a, 0.375);
-                row.old(b, 0.375);
-                row.old(c.origin(c.prev(h)), 0.125);
-                row.old(c.origin(c.prev(twin)), 0.125);
+                row.vertex(a, 0.375);
+                row.vertex(b, 0.375);
+                row.vertex(c.origin(c.prev(h)), 0.125);
+                row.vertex(c.origin(c.prev(twin)), 0.125);
             }
         });
         sink.pass(0, c.vertices(), |v, row| {
             if tags.is_sharp(c, v) {
-                row.old(v, 1.0);
+                row.vertex(v, 1.0);
             } else if let Some(arriving) = boundary_arrival(c, v) {
                 cubic_boundary(c, v, arriving, row);
             } else {
                 let mut n = 0u32;
                 c.turn(v, |h| {
-                    row.old(c.origin(c.next(h)), 1.0);
+                    row.vertex(c.origin(c.next(h)), 1.0);
                     n += 1;
                 });
                 let beta = beta(n);
                 row.scale(beta);
-                row.old(v, 1.0 - f64::from(n) * beta);
+                row.vertex(v, 1.0 - f64::from(n) * beta);
             }
         });
     }

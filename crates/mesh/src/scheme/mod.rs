@@ -19,7 +19,7 @@ pub use catmull_clark::CatmullClark;
 pub use linear::Linear;
 pub use loop_::Loop;
 
-use crate::sink::{Cursor, Eval, Record, Sink, Source};
+use crate::sink::{Cursor, Eval, Record, Sink, TakeRow};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
@@ -133,20 +133,19 @@ impl PartialEq for Entry {
     }
 }
 
-/// Compiles a scheme into an entry.
+/// Compiles a scheme into an entry: for every connectivity that it can meet, at full speed, and once for recording.
 const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
-        eval: |level, split, tags, sink| run::<S, _>(level, split, tags, sink),
-        record: |level, split, tags, sink| run::<S, _>(level, split, tags, sink),
-    }
-}
-
-fn run<S: Scheme, K: Sink>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut K) {
-    match level {
-        Level::Base(c) => S::rules(*c, split, tags, sink),
-        Level::Quads(c) => S::rules(*c, split, tags, sink),
-        Level::Triangles(c) => S::rules(*c, split, tags, sink),
+        eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
+            (Level::Base(c), _) => S::rules(*c, split, tags, sink),
+            (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
+            (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
+            (Level::Quads(_), Accepts::Triangles) | (Level::Triangles(_), Accepts::Polygons) => {
+                unreachable!("a scheme's own split made the level")
+            }
+        },
+        record: |level, split, tags, sink| S::rules(level, split, tags, sink),
     }
 }
 
@@ -169,7 +168,7 @@ impl Entry {
     pub fn rows(
         &self,
         (level, split, tags): (&Level<'_>, Split, Tags<'_>),
-        take: &mut dyn FnMut(u32, &[(Source, f64)]),
+        take: &mut TakeRow<'_>,
         cursor: &mut Cursor,
         quota: &mut usize,
     ) -> bool {
@@ -184,9 +183,9 @@ impl Entry {
 /// stay equal.
 #[inline(always)]
 fn cubic_boundary<C: Connectivity>(c: &C, v: u32, arriving: u32, row: &mut impl crate::sink::Row) {
-    row.old(c.origin(c.next(c.vertex_half_edge(v))), 0.125);
-    row.old(c.origin(arriving), 0.125);
-    row.old(v, 0.75);
+    row.vertex(c.origin(c.next(c.vertex_half_edge(v))), 0.125);
+    row.vertex(c.origin(arriving), 0.125);
+    row.vertex(v, 0.75);
 }
 
 /// The arriving boundary half-edge at `v`, if `v` lies on a boundary. Cost: the valence there, one step elsewhere.

@@ -111,3 +111,61 @@ pub enum Level<'a> {
     /// After a triangle split.
     Triangles(&'a TriangleLevel),
 }
+
+/// Runs `$body` with the connectivity behind a level, compiled for its type.
+macro_rules! on {
+    ($level:expr, $c:ident => $body:expr) => {
+        match $level {
+            $crate::split::Level::Base($c) => $body,
+            $crate::split::Level::Quads($c) => $body,
+            $crate::split::Level::Triangles($c) => $body,
+        }
+    };
+}
+pub(crate) use on;
+
+/// The same answers with a branch each: for what need not be fast and should not be compiled three times.
+impl Connectivity for Level<'_> {
+    fn vertices(&self) -> u32 {
+        on!(self, c => c.vertices())
+    }
+    fn edges(&self) -> u32 {
+        on!(self, c => c.edges())
+    }
+    fn faces(&self) -> u32 {
+        on!(self, c => c.faces())
+    }
+    fn half_edges(&self) -> u32 {
+        on!(self, c => c.half_edges())
+    }
+    fn boundary_half_edges(&self) -> u32 {
+        on!(self, c => c.boundary_half_edges())
+    }
+    fn face_half_edges(&self, f: u32) -> std::ops::Range<u32> {
+        on!(self, c => c.face_half_edges(f))
+    }
+    fn face(&self, h: u32) -> u32 {
+        on!(self, c => c.face(h))
+    }
+    fn next(&self, h: u32) -> u32 {
+        on!(self, c => c.next(h))
+    }
+    fn prev(&self, h: u32) -> u32 {
+        on!(self, c => c.prev(h))
+    }
+    fn twin(&self, h: u32) -> u32 {
+        on!(self, c => c.twin(h))
+    }
+    fn origin(&self, h: u32) -> u32 {
+        on!(self, c => c.origin(h))
+    }
+    fn edge(&self, h: u32) -> u32 {
+        on!(self, c => c.edge(h))
+    }
+    fn vertex_half_edge(&self, v: u32) -> u32 {
+        on!(self, c => c.vertex_half_edge(v))
+    }
+    fn edge_half_edge(&self, e: u32) -> u32 {
+        on!(self, c => c.edge_half_edge(e))
+    }
+}

@@ -142,7 +142,7 @@ impl Connectivity for TriangleLevel {
     }
     #[inline(always)]
     fn prev(&self, h: u32) -> u32 {
-        if h % 3 == 0 { h + 2 } else { h - 1 }
+        if h.is_multiple_of(3) { h + 2 } else { h - 1 }
     }
     #[inline(always)]
     fn twin(&self, h: u32) -> u32 {
