@@ -195,7 +195,7 @@ describe("the controls", () => {
   });
 
   test("the view is saved as a PNG of its device pixels", async () => {
-    const saved = await download(page, () => cmd(page, "export view.png"));
+    const saved = await download(page, "view.png", () => cmd(page, "export view.png"));
     const { PNG } = await import("pngjs");
     const png = PNG.sync.read(await readFile(saved.path));
     assert.deepEqual([png.width, png.height], [960, 640]);

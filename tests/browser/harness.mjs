@@ -40,6 +40,7 @@ const MIME = {
  * that are not part of the page, by path.
  */
 export async function serveSite() {
+  if (!existsSync(join(SITE, "index.html"))) throw new Error(`there is no page at ${SITE}: build it with cargo xtask dist`);
   /** @type {{ path: string, status: number, bytes: number }[]} */
   const sent = [];
   /** @type {Map<string, Buffer | string>} */
@@ -240,16 +241,29 @@ export function cards(page) {
 }
 
 /**
- * Waits for a file that the page saves.
+ * Waits for a file that the page saves; files that come with it (materials) are put beside it.
  * @param {import("playwright-core").Page} page
- * @param {() => Promise<unknown>} act what makes it save one
+ * @param {string} name
+ * @param {() => Promise<unknown>} act what makes the page save it
  */
-export async function download(page, act) {
-  const [saved] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), act()]);
+export async function download(page, name, act) {
   const folder = await scratch();
-  const path = join(folder, saved.suggestedFilename());
-  await saved.saveAs(path);
-  return { name: saved.suggestedFilename(), path, bytes: await readFile(path) };
+  /** @type {Promise<string>[]} */
+  const saving = [];
+  const save = (/** @type {import("playwright-core").Download} */ file) => {
+    const path = join(folder, file.suggestedFilename());
+    saving.push(file.saveAs(path).then(() => path));
+  };
+  page.on("download", save);
+  const [wanted] = await Promise.all([
+    page.waitForEvent("download", { timeout: 60_000, predicate: (file) => file.suggestedFilename() === name }),
+    act(),
+  ]);
+  await page.waitForTimeout(300);
+  page.off("download", save);
+  await Promise.all(saving);
+  const path = join(folder, wanted.suggestedFilename());
+  return { path, bytes: await readFile(path), names: (await Promise.all(saving)).map((path) => path.slice(folder.length + 1)).sort() };
 }
 
 /** @type {string[]} */

@@ -79,8 +79,8 @@ describe("a real model", () => {
  * @param {any} native what the command line says about the same surface
  */
 async function readsBack(page, model, native) {
-  const obj = await download(page, () => cmd(page, "export refined.obj"));
-  assert.equal(obj.name, "refined.obj");
+  const obj = await download(page, "refined.obj", () => cmd(page, "export refined.obj"));
+  assert.deepEqual(obj.names, ["refined.mtl", "refined.obj"], "materials come in a file of their own");
   const { positions, faces } = readObj(obj.bytes.toString("utf8"));
   assert.equal(positions.length, native.vertices);
   assert.equal(faces.length, native.faces);
@@ -93,7 +93,7 @@ async function readsBack(page, model, native) {
   assert.deepEqual(positions.map((p) => p.map(Math.fround)), other.positions.map((p) => p.map(Math.fround)));
   assert.deepEqual(faces, other.faces);
 
-  const glb = await download(page, () => cmd(page, "export refined.glb"));
+  const glb = await download(page, "refined.glb", () => cmd(page, "export refined.glb"));
   const report = await validator.validateBytes(new Uint8Array(glb.bytes));
   assert.equal(report.issues.numErrors, 0, JSON.stringify(report.issues.messages.slice(0, 3)));
   assert.equal(report.issues.numWarnings, 0, JSON.stringify(report.issues.messages.slice(0, 3)));

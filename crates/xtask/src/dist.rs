@@ -28,23 +28,30 @@ pub fn build(profile: Profile, site: &Path) -> Result<()> {
     assemble(profile, site)
 }
 
-/// Copies the page and the two built modules into a fresh folder.
+/// Copies the page and the two built modules into a fresh folder, which takes the old one's place when it is whole.
 pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
-    if dist.exists() {
-        fs::remove_dir_all(dist).with_context(|| format!("could not empty {}", paths::shown(dist)))?;
-    }
-    copy(&paths::root().join("index.html"), &dist.join("index.html"))?;
+    let fresh = paths::root().join("target/site.new");
+    remove(&fresh)?;
+    copy(&paths::root().join("index.html"), &fresh.join("index.html"))?;
     for from in files(&paths::root().join("web"))? {
         let name = from.strip_prefix(paths::root())?;
         // Type declarations are for editors and `tidy`.
         if !from.to_string_lossy().ends_with(".d.ts") {
-            copy(&from, &dist.join(name))?;
+            copy(&from, &fresh.join(name))?;
         }
     }
     for module in Module::ALL {
         for name in FILES {
-            copy(&module.package(profile).join(name), &dist.join("pkg").join(module.id()).join(name))?;
+            copy(&module.package(profile).join(name), &fresh.join("pkg").join(module.id()).join(name))?;
         }
+    }
+    remove(dist)?;
+    fs::rename(&fresh, dist).with_context(|| format!("could not fill {}", paths::shown(dist)))
+}
+
+fn remove(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not empty {}", paths::shown(folder)))?;
     }
     Ok(())
 }
