@@ -17,6 +17,7 @@ mod gltf;
 mod model;
 mod mtl;
 mod obj;
+pub mod parcel;
 mod scan;
 mod write_glb;
 mod write_obj;

@@ -1,0 +1,399 @@
+//! Models and exports as plain bytes, for a reader and a writer that live in a module of their own.
+//!
+//! A page should not have to load every file format before it draws its first picture. So the readers and writers can be
+//! compiled apart and loaded when a file arrives, and what passes between the two modules is one buffer:
+//!
+//! ```text
+//!   file bytes ── read, pack ──> | name | stamp | model or message |  ── unpack ──> Parcel
+//!   level      ── pack_export ─> | arrays, names, pictures |          ── unpack_export, write_obj / write_glb ──> files
+//! ```
+//!
+//! Every item is its length in 32 bits and its bytes, little-endian, padded to four. The layout is private to one build:
+//! it is never stored. Unpacking checks every length and never panics. Cost: one copy each way.
+
+use bytemuck::{Pod, pod_collect_to_vec};
+use limn_mesh::{Soup, Weld};
+
+use crate::{Export, ExportFaces, Image, Material, Model, Tags};
+
+/// A sentence about a model, and whether a page may fold it away.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// The sentence.
+    pub text: String,
+    /// Whether it is ordinary.
+    pub minor: bool,
+}
+
+impl From<&crate::Warning> for Notice {
+    fn from(warning: &crate::Warning) -> Self {
+        Notice { text: warning.to_string(), minor: warning.is_minor() }
+    }
+}
+
+/// What reading a file came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parcel {
+    /// The file that was read.
+    pub name: String,
+    /// Its length in bytes.
+    pub size: u64,
+    /// A hash of its bytes, the reader's choice.
+    pub hash: u64,
+    /// The model and what there is to say about it, or why there is none.
+    pub result: Result<(Model, Vec<Notice>), String>,
+}
+
+/// The buffer is none that this build packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the file's contents were damaged on the way; try again")]
+pub struct Damaged;
+
+impl Parcel {
+    /// The parcel as bytes.
+    pub fn pack(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        out.text(&self.name);
+        out.array(&[self.size, self.hash]);
+        match &self.result {
+            Ok((model, notices)) => {
+                out.number(1);
+                out.model(model);
+                out.list(notices, |out, n| {
+                    out.text(&n.text);
+                    out.number(n.minor.into());
+                });
+            }
+            Err(message) => {
+                out.number(0);
+                out.text(message);
+            }
+        }
+        out.0
+    }
+
+    /// The parcel that these bytes are.
+    ///
+    /// # Errors
+    /// [`Damaged`].
+    pub fn unpack(bytes: &[u8]) -> Result<Parcel, Damaged> {
+        let mut from = Reader(bytes);
+        let name = from.text()?;
+        let [size, hash] = from.exactly::<u64, 2>()?;
+        let result = match from.number()? {
+            1 => {
+                let model = from.model()?;
+                let notices = from.list(|f| Ok(Notice { text: f.text()?, minor: f.number()? == 1 }))?;
+                Ok((model, notices))
+            }
+            _ => Err(from.text()?),
+        };
+        Ok(Parcel { name, size, hash, result })
+    }
+}
+
+/// An export that owns its arrays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Packed {
+    name: String,
+    points: Vec<[f32; 3]>,
+    offsets: Vec<u32>,
+    corners: Vec<u32>,
+    degree: u32,
+    normals: Option<Vec<[f32; 3]>>,
+    uv: Option<(Vec<[f32; 2]>, Vec<u32>)>,
+    colors: Vec<[f32; 4]>,
+    face_groups: Vec<u32>,
+    group_names: Vec<String>,
+    face_materials: Vec<u32>,
+    materials: Vec<Material>,
+    images: Vec<Image>,
+}
+
+/// An export as bytes.
+pub fn pack_export(export: &Export<'_>) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.text(export.name);
+    out.array(export.points);
+    let (degree, offsets) = match export.faces {
+        ExportFaces::Polygons { offsets, .. } => (0, offsets),
+        ExportFaces::Triangles(_) => (3, &[][..]),
+        ExportFaces::Quads(_) => (4, &[][..]),
+    };
+    out.number(degree);
+    out.array(offsets);
+    out.array(export.faces.corners());
+    out.number(export.normals.is_some().into());
+    out.array(export.normals.unwrap_or_default());
+    out.number(export.uv.is_some().into());
+    let (values, corners) = export.uv.unwrap_or_default();
+    out.array(values);
+    out.array(corners);
+    out.array(export.colors);
+    out.array(export.face_groups);
+    out.list(export.group_names, |out, name| out.text(name));
+    out.array(export.face_materials);
+    out.list(export.materials, Writer::material);
+    out.list(export.images, Writer::image);
+    out.0
+}
+
+/// The export that these bytes are.
+///
+/// # Errors
+/// [`Damaged`].
+pub fn unpack_export(bytes: &[u8]) -> Result<Packed, Damaged> {
+    let mut from = Reader(bytes);
+    Ok(Packed {
+        name: from.text()?,
+        points: from.array()?,
+        degree: from.number()?,
+        offsets: from.array()?,
+        corners: from.array()?,
+        normals: from.option(Reader::array)?,
+        uv: from.option(|f| Ok((f.array()?, f.array()?)))?,
+        colors: from.array()?,
+        face_groups: from.array()?,
+        group_names: from.list(Reader::text)?,
+        face_materials: from.array()?,
+        materials: from.list(Reader::material)?,
+        images: from.list(Reader::image)?,
+    })
+}
+
+impl Packed {
+    /// The export, for a writer.
+    pub fn export(&self) -> Export<'_> {
+        Export {
+            name: &self.name,
+            points: &self.points,
+            faces: match self.degree {
+                3 => ExportFaces::Triangles(&self.corners),
+                4 => ExportFaces::Quads(&self.corners),
+                _ => ExportFaces::Polygons { offsets: &self.offsets, corners: &self.corners },
+            },
+            normals: self.normals.as_deref(),
+            uv: self.uv.as_ref().map(|(values, corners)| (&values[..], &corners[..])),
+            colors: &self.colors,
+            face_groups: &self.face_groups,
+            group_names: &self.group_names,
+            face_materials: &self.face_materials,
+            materials: &self.materials,
+            images: &self.images,
+        }
+    }
+}
+
+#[derive(Default)]
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn number(&mut self, n: u32) {
+        self.0.extend_from_slice(&n.to_le_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.number(bytes.len() as u32);
+        self.0.extend_from_slice(bytes);
+        self.0.resize(self.0.len().next_multiple_of(4), 0);
+    }
+
+    fn text(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
+    }
+
+    fn array<T: Pod>(&mut self, values: &[T]) {
+        self.bytes(bytemuck::cast_slice(values));
+    }
+
+    fn list<T>(&mut self, items: &[T], mut write: impl FnMut(&mut Self, &T)) {
+        self.number(items.len() as u32);
+        items.iter().for_each(|item| write(self, item));
+    }
+
+    fn material(&mut self, m: &Material) {
+        self.text(&m.name);
+        self.array(&m.base_color);
+        self.number(m.texture.map_or(0, |t| t.wrapping_add(1)));
+        self.number(m.double_sided.into());
+    }
+
+    fn image(&mut self, i: &Image) {
+        self.text(&i.name);
+        self.text(&i.mime);
+        self.bytes(&i.bytes);
+    }
+
+    fn model(&mut self, m: &Model) {
+        self.text(&m.name);
+        let s = &m.soup;
+        self.array(&s.positions);
+        self.array(&s.parts);
+        self.array(&s.offsets);
+        self.array(&s.corners);
+        self.array(&s.uvs);
+        self.array(&s.uv_corners);
+        self.array(&s.colors);
+        self.array(&s.face_groups);
+        self.array(&s.face_materials);
+        self.list(&m.groups, |out, name| out.text(name));
+        self.list(&m.materials, Self::material);
+        self.list(&m.images, Self::image);
+        self.number(m.triangulated.into());
+        let (kind, fraction) = match m.weld {
+            Weld::Off => (0, 0.0),
+            Weld::Exact => (1, 0.0),
+            Weld::Relative(fraction) => (2, fraction),
+        };
+        self.number(kind);
+        self.number(fraction.to_bits());
+        self.list(&m.tags.creases, |out, (edge, sharpness)| out.array(&[edge[0], edge[1], sharpness.to_bits()]));
+        self.list(&m.tags.corners, |out, (vertex, sharpness)| out.array(&[*vertex, sharpness.to_bits()]));
+    }
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Damaged> {
+        let (head, tail) = self.0.split_at_checked(count).ok_or(Damaged)?;
+        self.0 = tail;
+        Ok(head)
+    }
+
+    fn number(&mut self) -> Result<u32, Damaged> {
+        Ok(u32::from_le_bytes(self.take(4)?.try_into().map_err(|_| Damaged)?))
+    }
+
+    fn bytes(&mut self) -> Result<&'a [u8], Damaged> {
+        let count = self.number()? as usize;
+        let bytes = self.take(count)?;
+        self.take(count.next_multiple_of(4) - count)?;
+        Ok(bytes)
+    }
+
+    fn text(&mut self) -> Result<String, Damaged> {
+        String::from_utf8(self.bytes()?.to_vec()).map_err(|_| Damaged)
+    }
+
+    fn array<T: Pod>(&mut self) -> Result<Vec<T>, Damaged> {
+        let bytes = self.bytes()?;
+        if bytes.len().checked_rem(size_of::<T>()) != Some(0) {
+            return Err(Damaged);
+        }
+        Ok(pod_collect_to_vec(bytes))
+    }
+
+    fn exactly<T: Pod, const N: usize>(&mut self) -> Result<[T; N], Damaged> {
+        self.array()?.try_into().map_err(|_| Damaged)
+    }
+
+    fn list<T>(&mut self, mut read: impl FnMut(&mut Self) -> Result<T, Damaged>) -> Result<Vec<T>, Damaged> {
+        // No room is made in advance: a damaged count must not cost memory.
+        (0..self.number()?).map(|_| read(self)).collect()
+    }
+
+    /// A flag, then the value, which is there either way.
+    fn option<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Damaged>) -> Result<Option<T>, Damaged> {
+        let is_there = self.number()? == 1;
+        let value = read(self)?;
+        Ok(is_there.then_some(value))
+    }
+
+    fn material(&mut self) -> Result<Material, Damaged> {
+        Ok(Material {
+            name: self.text()?,
+            base_color: self.exactly()?,
+            texture: self.number()?.checked_sub(1),
+            double_sided: self.number()? == 1,
+        })
+    }
+
+    fn image(&mut self) -> Result<Image, Damaged> {
+        Ok(Image { name: self.text()?, mime: self.text()?, bytes: self.bytes()?.to_vec() })
+    }
+
+    fn model(&mut self) -> Result<Model, Damaged> {
+        Ok(Model {
+            name: self.text()?,
+            soup: Soup {
+                positions: self.array()?,
+                parts: self.array()?,
+                offsets: self.array()?,
+                corners: self.array()?,
+                uvs: self.array()?,
+                uv_corners: self.array()?,
+                colors: self.array()?,
+                face_groups: self.array()?,
+                face_materials: self.array()?,
+            },
+            groups: self.list(Self::text)?,
+            materials: self.list(Self::material)?,
+            images: self.list(Self::image)?,
+            triangulated: self.number()? == 1,
+            weld: match (self.number()?, f32::from_bits(self.number()?)) {
+                (0, _) => Weld::Off,
+                (1, _) => Weld::Exact,
+                (_, fraction) => Weld::Relative(fraction),
+            },
+            tags: Tags {
+                creases: self.list(|f| f.exactly().map(|[a, b, s]| ([a, b], f32::from_bits(s))))?,
+                corners: self.list(|f| f.exactly().map(|[v, s]| (v, f32::from_bits(s))))?,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Limits, read, write_glb, write_obj};
+
+    fn parcel() -> Parcel {
+        let obj =
+            b"mtllib m.mtl\no one\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0.5 1 1 1\nvt 0 0\nvt 1 1\n\
+            usemtl red\ng left right\nf 1/1 2/2 3/1 4/2\nf 1 2 3\nt crease 2/1/0 0 1 2.5\nt corner 1/1/0 3 4\nl 1 2\n";
+        let files = vec![("m.mtl".to_owned(), b"newmtl red\nKd 1 0.5 0\nmap_Kd a.png\n".to_vec())];
+        let (mut model, warnings) = read("a.obj", obj, &files, &Limits::default()).unwrap();
+        model.images.push(Image { name: "a.png".into(), mime: "image/png".into(), bytes: vec![1, 2, 3, 4, 5] });
+        model.weld = Weld::Relative(1e-4);
+        let notices = warnings.iter().map(Notice::from).collect::<Vec<_>>();
+        assert!(!notices.is_empty() && !model.tags.creases.is_empty() && !model.tags.corners.is_empty());
+        Parcel { name: "a.obj".into(), size: 1 << 40, hash: u64::MAX - 1, result: Ok((model, notices)) }
+    }
+
+    #[test]
+    fn everything_comes_back() {
+        let parcel = parcel();
+        assert_eq!(Parcel::unpack(&parcel.pack()), Ok(parcel));
+        let refused = Parcel { name: "b".into(), size: 0, hash: 0, result: Err("It is empty.".into()) };
+        assert_eq!(Parcel::unpack(&refused.pack()), Ok(refused));
+    }
+
+    #[test]
+    fn exports_are_written_the_same() {
+        let (model, _) = parcel().result.unwrap();
+        let normals = vec![[0.0, 0.0, 1.0]; 4];
+        let export = Export { normals: Some(&normals), ..Export::from_model(&model) };
+        let packed = unpack_export(&pack_export(&export)).unwrap();
+        assert_eq!(write_obj(&packed.export()), write_obj(&export));
+        assert_eq!(write_glb(&packed.export()), write_glb(&export));
+        let quads = Export { faces: ExportFaces::Quads(&[0, 1, 2, 3]), points: &normals, ..Export::default() };
+        let packed = unpack_export(&pack_export(&quads)).unwrap();
+        assert_eq!(write_obj(&packed.export()), write_obj(&quads));
+    }
+
+    #[test]
+    fn damage_is_noticed_and_never_panics() {
+        let whole = parcel().pack();
+        for cut in 0..whole.len() {
+            assert_eq!(Parcel::unpack(&whole[..cut]), Err(Damaged), "cut at {cut}");
+        }
+        for at in 0..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 0x81;
+            let _ = Parcel::unpack(&bytes);
+            let _ = unpack_export(&bytes);
+        }
+    }
+}
