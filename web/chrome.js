@@ -160,6 +160,6 @@ export class Chrome {
       model ? `drawn in ${duration(times.draw)}` : "",
       this.#hello?.renderer === "webgpu" ? "WebGPU" : this.#hello ? "WebGL2" : "",
     ].filter(Boolean).join("  ·  "));
-    byId("status-engine").title = this.#hello ? `${this.#hello.adapter}; read in ${duration(times.read)}, sent to the GPU in ${duration(times.build)}` : "";
+    byId("status-engine").title = this.#hello ? `${this.#hello.adapter}; connected in ${duration(times.read)}, sent to the GPU in ${duration(times.build)}` : "";
   }
 }

@@ -9,10 +9,13 @@
 /** @typedef {import("./protocol.js").Renderer} Renderer */
 /** @typedef {import("./protocol.js").Engine} Engine */
 
+import * as formats from "./formats.js";
+
 /**
  * What the engine asks of its surroundings, beside the messages that go on to the page.
  * @typedef {{ type: "fetch", url: string, turn: number }
  *   | { type: "decode", index: number, mime: string, bytes: Uint8Array<ArrayBuffer>, turn: number }
+ *   | { type: "write", name: string, bytes: Uint8Array<ArrayBuffer> }
  *   | { type: "png", name: string, width: number, height: number, bytes: Uint8Array<ArrayBuffer> }} Wish
  */
 
@@ -90,7 +93,7 @@ export function createHost(post) {
     if (message.type === "fetch") void download(message.url, message.turn);
     else if (message.type === "decode") void decode(message);
     else if (message.type === "png") void picture(message);
-    else if (message.type === "file") post(message, [message.bytes.buffer]);
+    else if (message.type === "write") void write(message);
     else post(message);
   };
 
@@ -117,7 +120,9 @@ export function createHost(post) {
       }
       const bytes = new Uint8Array(got);
       parts.reduce((at, part) => (bytes.set(part, at), at + part.length), 0);
-      enter((e) => e.fetched(url, turn, bytes, ""));
+      const name = decodeURIComponent(new URL(url, location.href).pathname.split("/").pop() ?? "");
+      const parcel = await formats.read({ names: [name], bytes: [bytes], wanted: undefined, budget: engine?.budget() ?? 0 });
+      enter((e) => e.fetched(url, turn, parcel, ""));
     } catch (error) {
       const why = error instanceof RangeError
         ? error.message
@@ -143,6 +148,37 @@ export function createHost(post) {
       bitmap = undefined;
     }
     enter((e) => e.decoded(turn, index, bitmap));
+  };
+
+  /** The media types of what exports are made of. @type {Record<string, string>} */
+  const types = { obj: "model/obj", mtl: "model/mtl", glb: "model/gltf-binary", png: "image/png", jpg: "image/jpeg", jpeg: "image/jpeg", webp: "image/webp" };
+
+  /** @param {Extract<Wish, { type: "write" }>} wish */
+  const write = async ({ name, bytes }) => {
+    try {
+      for (const out of await formats.write({ packed: bytes, file: name })) {
+        const mime = types[out.name.split(".").pop()?.toLowerCase() ?? ""] ?? "application/octet-stream";
+        post({ type: "file", name: out.name, mime, bytes: out.bytes }, [out.bytes.buffer]);
+      }
+    } catch (error) {
+      const why = error instanceof Error ? error.message : String(error);
+      post({ type: "card", card: { id: "write", kind: "error", title: `${name} could not be written`, lines: [sentence(why)], ask: "" } });
+    }
+  };
+
+  /** Reads files in a thread of their own. A card tells what goes wrong. @param {NamedFile[]} files @param {string} text @param {boolean} again */
+  const parcelOf = async (files, text, again) => {
+    const { names, bytes, failed } = await read(files);
+    const trouble = (/** @type {string} */ name, /** @type {string} */ why) =>
+      post({ type: "card", card: { id: "read", kind: "error", title: `${name} could not be read`, lines: [sentence(why)], ask: "" } });
+    if (failed) trouble(failed, "The browser gave no bytes: it may have moved or changed; drop it again.");
+    if (!engine || !names.length) return undefined;
+    try {
+      return await formats.read({ names, bytes, wanted: engine.wanted(text, again), budget: engine.budget() });
+    } catch (error) {
+      trouble(names[0] ?? "The file", error instanceof Error ? error.message : String(error));
+      return undefined;
+    }
   };
 
   /** @param {Extract<Wish, { type: "png" }>} wish */
@@ -181,8 +217,8 @@ export function createHost(post) {
       return;
     }
     // Messages that came meanwhile wait until the files are read: the document comes first.
-    const files = await read(start.files);
-    enter((e) => e.replay(start.text, start.notice, files.names, files.bytes));
+    const parcel = await parcelOf(start.files, start.text, false);
+    enter((e) => e.replay(start.text, start.notice, parcel));
     for (const message of waiting.splice(0)) deliver(message);
   };
 
@@ -202,19 +238,19 @@ export function createHost(post) {
       case "reload": {
         const again = message.type === "reload";
         const mine = (asked += 1);
+        formats.stop();
         const size = message.files.reduce((sum, { file }) => sum + file.size, 0);
         if (size > TALKED_ABOUT) post({ type: "progress", what: `Reading ${message.files[0]?.name}`, done: -1, cancel: true });
-        void read(message.files).then(({ names, bytes, failed }) => {
+        void parcelOf(message.files, "", again).then((parcel) => {
           // Cancelled, or something else was dropped since.
           if (mine !== asked) return;
-          if (failed) post({ type: "card", card: { id: "read", kind: "error", title: `${failed} could not be read`, lines: ["The browser gave no bytes: it may have moved or changed; drop it again."], ask: "" } });
-          enter((e) => e.open(names, bytes, again));
+          if (parcel) enter((e) => e.open(parcel, again));
           if (size > TALKED_ABOUT) post({ type: "progress", what: "", done: 0, cancel: false });
         });
         break;
       }
       case "replay":
-        enter((e) => e.replay(message.text, "", [], []));
+        enter((e) => e.replay(message.text, "", undefined));
         break;
       case "cmd":
         enter((e) => e.command(message.text, message.echo ?? false, message.drag ?? false));
@@ -232,6 +268,7 @@ export function createHost(post) {
         break;
       case "cancel":
         asked += 1;
+        formats.stop();
         post({ type: "progress", what: "", done: 0, cancel: false });
         enter((e) => e.cancel());
         post({ type: "pong" });
@@ -242,6 +279,12 @@ export function createHost(post) {
     }
   };
   return deliver;
+}
+
+/** With a capital and a full stop. @param {string} text */
+function sentence(text) {
+  const whole = text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?]$/.test(whole) ? whole : `${whole}.`;
 }
 
 /** Which of the two modules this browser can draw with. @returns {Promise<Renderer>} */
@@ -256,7 +299,7 @@ async function probe() {
 /** @param {NamedFile[]} files */
 async function read(files) {
   /** @type {string[]} */ const names = [];
-  /** @type {Uint8Array[]} */ const bytes = [];
+  /** @type {Uint8Array<ArrayBuffer>[]} */ const bytes = [];
   let failed = "";
   for (const { name, file } of files) {
     try {

@@ -210,8 +210,10 @@ export interface EngineModule {
 
 /** The engine's calls: crates/engine/src/engine/mod.rs says what each does. */
 export interface Engine {
-  replay(text: string, notice: string, names: string[], bytes: Uint8Array[]): void;
-  open(names: string[], bytes: Uint8Array[], again: boolean): void;
+  replay(text: string, notice: string, parcel: Uint8Array | undefined): void;
+  wanted(text: string, again: boolean): string | undefined;
+  budget(): number;
+  open(parcel: Uint8Array, again: boolean): void;
   command(text: string, echo: boolean, drag: boolean): void;
   input(batch: Float32Array): void;
   resize(width: number, height: number, scale: number, insets: number[]): void;
@@ -221,7 +223,7 @@ export interface Engine {
   work(milliseconds: number): void;
   wants_frame(): boolean;
   frame(): boolean;
-  fetched(url: string, turn: number, bytes: Uint8Array | undefined, error: string): void;
+  fetched(url: string, turn: number, parcel: Uint8Array | undefined, error: string): void;
   decoded(turn: number, index: number, bitmap: ImageBitmap | undefined): void;
 }
 

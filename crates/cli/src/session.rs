@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use limn_document::export::{ExportError, format};
 use limn_document::{Command, CommandError, Document, Outcome, Source, Stamp};
+use limn_formats::parcel::Notice;
 use limn_formats::{Limits, read};
 use limn_mesh::{Job, Plan, RefineError, Refined};
 
@@ -117,7 +118,8 @@ impl Session {
                 error => input(&error),
             })?;
         let opened = Source::File { name, stamp: Some(Stamp::of(&bytes)) };
-        self.document.load(opened, model, &warnings).map_err(|error| input(&error))?;
+        let notices: Vec<Notice> = warnings.iter().map(Notice::from).collect();
+        self.document.load(opened, model, &notices).map_err(|error| input(&error))?;
         self.path = path;
         self.refined = None;
         self.tell(true);

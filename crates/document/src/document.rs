@@ -17,7 +17,8 @@
 
 use std::sync::Arc;
 
-use limn_formats::{Model, Warning};
+use limn_formats::Model;
+use limn_formats::parcel::Notice;
 use limn_mesh::{Accepts, Mesh, Plan, Prediction, RefineError, Soup, Weld, predict, shape};
 
 use crate::build::{Edit, Remark};
@@ -171,7 +172,7 @@ impl Document {
     /// # Errors
     /// A file other than the one that a link or script asks for (by size or hash), or polygons that make no mesh. The
     /// present model stays, and in the first case the document still waits.
-    pub fn load(&mut self, source: Source, model: Model, warnings: &[Warning]) -> Result<Outcome, CommandError> {
+    pub fn load(&mut self, source: Source, model: Model, notices: &[Notice]) -> Result<Outcome, CommandError> {
         let reload = match &self.pending {
             Some(Pending { source: asked, reload: false }) => {
                 if let (Some(a), Some(b)) = (asked.stamp(), source.stamp()) {
@@ -190,7 +191,7 @@ impl Document {
             None => false,
         };
         self.pending = None;
-        let mut state = State::new(source, model, warnings)?;
+        let mut state = State::new(source, model, notices)?;
         let before = self.state.as_ref().filter(|_| reload);
         if let Some(before) = before {
             state.edits = before.edits.clone();

@@ -4,6 +4,7 @@
 //! programs that draw. Groups, materials, pictures, texture coordinates and vertex colours go along, each face with those of
 //! the face that it came from. Vertices that building the mesh had split are written once. Cost: linear in the level.
 
+use limn_formats::parcel::pack_export;
 use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_glb, write_obj};
 use limn_mesh::{Faces, Refined};
 
@@ -55,6 +56,32 @@ impl Document {
     /// # Errors
     /// [`ExportError`].
     pub fn export(&self, refined: &Refined, file: &str) -> Result<Vec<OutFile>, ExportError> {
+        let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+        let mut files = self.with_export(refined, file, |export, format| match format {
+            ExportFormat::Obj => write_obj(export),
+            ExportFormat::Glb => write_glb(export).map(|bytes| vec![OutFile { name: name.to_owned(), bytes }]),
+        })??;
+        if let Some(first) = files.first_mut() {
+            // As the person wrote it, capitals of the extension included.
+            first.name = name.to_owned();
+        }
+        Ok(files)
+    }
+
+    /// The same, not yet written: packed for a writer elsewhere ([`limn_formats::parcel`]).
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn export_packed(&self, refined: &Refined, file: &str) -> Result<Vec<u8>, ExportError> {
+        self.with_export(refined, file, |export, _| pack_export(export))
+    }
+
+    fn with_export<T>(
+        &self,
+        refined: &Refined,
+        file: &str,
+        take: impl FnOnce(&Export<'_>, ExportFormat) -> T,
+    ) -> Result<T, ExportError> {
         let format = format(file)?;
         let (Some(model), Some(soup), Some(mesh)) = (self.model(), self.soup(), self.mesh()) else {
             return Err(ExportError::Stale);
@@ -101,15 +128,7 @@ impl Document {
             materials: &model.materials,
             images: &model.images,
         };
-        let mut files = match format {
-            ExportFormat::Obj => write_obj(&export)?,
-            ExportFormat::Glb => vec![OutFile { name: name.to_owned(), bytes: write_glb(&export)? }],
-        };
-        if let Some(first) = files.first_mut() {
-            // As the person wrote it, capitals of the extension included.
-            first.name = name.to_owned();
-        }
-        Ok(files)
+        Ok(take(&export, format))
     }
 }
 

@@ -5,7 +5,8 @@
 
 use std::sync::Arc;
 
-use limn_formats::{Model, Warning};
+use limn_formats::Model;
+use limn_formats::parcel::Notice;
 use limn_mesh::{Accepts, Boundary, Entry, Job, Mesh, Plan, RefineError, Weld, predict, scheme};
 
 use crate::build::{Base, BuildError, Built, Edit, Remark};
@@ -40,12 +41,12 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub fn new(source: Source, model: Model, warnings: &[Warning]) -> Result<State, CommandError> {
+    pub fn new(source: Source, model: Model, notices: &[Notice]) -> Result<State, CommandError> {
         let model = Arc::new(model);
         let base = Arc::new(Base::build(&model, false, &[], model.weld)?);
         let scheme = find_scheme(if base.polygons.mesh.is_triangles() { "loop" } else { "catmull-clark" })?;
         let settings = Settings { weld: None, quads: false, scheme, boundary: Boundary::default(), level: 0 };
-        let imported = warnings.iter().map(|w| Remark::new(&w.to_string(), w.is_minor())).collect();
+        let imported = notices.iter().map(|n| Remark::new(&n.text, n.minor)).collect();
         let built = base.polygons.clone();
         Ok(State { source, model, imported, edits: Arc::default(), settings, base, built, adapted: None })
     }

@@ -2,7 +2,8 @@
 
 use limn_document::command::parse_script;
 use limn_document::{Document, Outcome, Replayed, Source, Stamp};
-use limn_formats::{Limits, Model, Warning, read};
+use limn_formats::parcel::Notice;
+use limn_formats::{Limits, Model, read};
 use limn_mesh::refine;
 
 const BUDGET: u64 = 10 << 20;
@@ -17,10 +18,10 @@ fn run(document: &mut Document, line: &str) -> Outcome {
     document.run(line).unwrap_or_else(|e| panic!("{line}: {e}"))
 }
 
-fn obj(text: &str) -> (Source, Model, Vec<Warning>) {
+fn obj(text: &str) -> (Source, Model, Vec<Notice>) {
     let source = Source::File { name: "a.obj".into(), stamp: Some(Stamp::of(text.as_bytes())) };
     let (model, warnings) = read("a.obj", text.as_bytes(), &(), &Limits::default()).unwrap();
-    (source, model, warnings)
+    (source, model, warnings.iter().map(Notice::from).collect())
 }
 
 fn load(document: &mut Document, text: &str) -> Outcome {

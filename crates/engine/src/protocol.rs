@@ -169,7 +169,7 @@ pub struct Shown {
 /// Milliseconds of the last time each was done.
 #[derive(Clone, Copy, Default, Serialize)]
 pub struct Times {
-    /// Reading the file and connecting its faces.
+    /// Connecting the model's faces.
     pub read: f64,
     /// From the mesh to the level's points and faces.
     pub refine: f64,

@@ -6,7 +6,7 @@
 use crate::arguments::Arguments;
 use crate::paths;
 use crate::process::say;
-use crate::wasm::{self, FILES, Module, Profile};
+use crate::wasm::{self, Module, Profile};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,8 +41,8 @@ pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
         }
     }
     for module in Module::ALL {
-        for name in FILES {
-            copy(&module.package(profile).join(name), &fresh.join("pkg").join(module.id()).join(name))?;
+        for name in module.files() {
+            copy(&module.package(profile).join(&name), &fresh.join("pkg").join(module.id()).join(name))?;
         }
     }
     remove(dist)?;
@@ -85,20 +85,23 @@ pub fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// Prints every file of a built page with its size, raw and compressed, and what each renderer adds up to.
 pub fn report(dist: &Path) -> Result<()> {
-    let mut sums = [(0, 0); 3];
+    let mut sums = [(0, 0); Module::ALL.len() + 1];
     println!("{:>12} {:>12}  file", "bytes", "brotli 11");
     for path in files(dist)? {
         let bytes = fs::read(&path)?;
         let small = brotli_size(&bytes)?;
         let name = path.strip_prefix(dist)?.display().to_string();
         println!("{:>12} {small:>12}  {name}", bytes.len());
-        let place =
-            Module::ALL.iter().position(|module| name.starts_with(&format!("pkg/{}", module.id()))).unwrap_or(2);
+        let place = Module::ALL
+            .iter()
+            .position(|module| name.starts_with(&format!("pkg/{}", module.id())))
+            .unwrap_or(Module::ALL.len());
         sums[place].0 += bytes.len();
         sums[place].1 += small;
     }
-    for (at, module) in Module::ALL.into_iter().enumerate() {
-        let (raw, small) = (sums[at].0 + sums[2].0, sums[at].1 + sums[2].1);
+    let page = sums[Module::ALL.len()];
+    for (at, module) in Module::ALL.into_iter().enumerate().filter(|(_, module)| *module != Module::Files) {
+        let (raw, small) = (sums[at].0 + page.0, sums[at].1 + page.1);
         println!("{raw:>12} {small:>12}  everything for {}", module.id());
     }
     Ok(())

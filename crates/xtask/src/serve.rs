@@ -4,7 +4,8 @@
 //! /                 index.html        from the working tree, as it is now
 //! /web/...          modules, styles   from the working tree, as they are now
 //! /pkg/webgpu/...   glue and wasm     built before the page gets them, when a source is newer
-//! /pkg/webgl/...    the fallback      the same; built behind the first page
+//! /pkg/files/...    the file formats  the same; built behind the first page
+//! /pkg/webgl/...    the fallback      the same
 //! ```
 //!
 //! The WebGPU module is built first and the address printed as soon as it is there; the fallback follows in the
@@ -15,7 +16,7 @@
 use crate::arguments::Arguments;
 use crate::process::say;
 use crate::server::{self, Response};
-use crate::wasm::{self, FILES, Module, Profile};
+use crate::wasm::{self, Module, Profile};
 use crate::{dist, paths};
 use anyhow::Result;
 use std::fs;
@@ -28,7 +29,7 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
     let port = arguments.value("--port")?.map(|port| port.parse()).transpose();
     let port = port.map_err(|_| anyhow::anyhow!("--port takes a number from 0 to 65535"))?;
     let modules = match arguments.value("--only")? {
-        Some(id) => vec![Module::parse(&id)?],
+        Some(id) => vec![Module::parse(&id)?, Module::Files],
         None => Module::ALL.to_vec(),
     };
     arguments.finish()?;
@@ -63,12 +64,12 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
 struct Site {
     profile: Profile,
     modules: Vec<Module>,
-    building: [Mutex<()>; 2],
+    building: [Mutex<()>; Module::ALL.len()],
 }
 
 impl Site {
     fn new(profile: Profile, modules: Vec<Module>) -> Self {
-        Self { profile, modules, building: [Mutex::new(()), Mutex::new(())] }
+        Self { profile, modules, building: Default::default() }
     }
 
     fn build(&self, module: Module) -> Result<()> {
@@ -99,10 +100,10 @@ impl Site {
         }
     }
 
-    fn package_file(&self, path: &str) -> Option<(Module, &'static str)> {
+    fn package_file(&self, path: &str) -> Option<(Module, String)> {
         let (id, name) = path.strip_prefix("/pkg/")?.split_once('/')?;
         let module = self.modules.iter().copied().find(|module| module.id() == id)?;
-        Some((module, FILES.into_iter().find(|file| *file == name)?))
+        Some((module, module.files().into_iter().find(|file| file == name)?))
     }
 }
 

@@ -65,12 +65,15 @@ pub fn run(arguments: Arguments) -> Result<()> {
 
     toolchain::ensure_target(WASM)?;
     for module in Module::ALL {
-        say(format!("clippy on the engine with {}", module.id()));
-        let mut engine = process::cargo();
-        engine.args(["clippy", "--no-deps", "--package", "limn-engine", "--lib", "--target", WASM]);
-        engine.args(["--no-default-features", "--features", module.id(), "--target-dir"]).arg(module.target());
-        engine.env("RUSTFLAGS", toolchain::wasm_flags()).args(["--", "-D", "warnings"]);
-        check("clippy on the engine", process::succeeds(no_panic(&mut engine))?);
+        say(format!("clippy on the {} module", module.id()));
+        let mut clippy = process::cargo();
+        clippy.args(["clippy", "--no-deps", "--package", module.crate_name(), "--lib", "--target", WASM]);
+        if module != Module::Files {
+            clippy.args(["--no-default-features", "--features", module.id()]);
+        }
+        clippy.arg("--target-dir").arg(module.target());
+        clippy.env("RUSTFLAGS", toolchain::wasm_flags()).args(["--", "-D", "warnings"]);
+        check("clippy on a wasm module", process::succeeds(no_panic(&mut clippy))?);
     }
 
     say("shaders under naga");

@@ -1,4 +1,4 @@
-//! Building the engine to wasm.
+//! Building the wasm modules: the engine, twice, and the files' readers and writers.
 //!
 //! ```text
 //! crates/engine ──cargo rustc──► target/wasm-webgpu/…/limn_engine.wasm ──wasm-bindgen──► target/wasm-webgpu/pkg-serve/
@@ -18,24 +18,38 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 use wasm_bindgen_cli_support::Bindgen;
 
-/// One of the two wasm modules.
+/// One of the wasm modules.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Module {
     /// Draws with WebGPU only: what most visitors load.
     WebGpu,
     /// Draws with WebGL2: the fallback.
     WebGl,
+    /// Reads and writes model files: loaded when one arrives.
+    Files,
 }
 
 impl Module {
-    /// Both, the one that most visitors load first.
-    pub const ALL: [Self; 2] = [Self::WebGpu, Self::WebGl];
+    /// All, the one that most visitors load first.
+    pub const ALL: [Self; 3] = [Self::WebGpu, Self::Files, Self::WebGl];
 
-    /// Its name in URLs, folders and cargo features.
+    /// The crate that it is made from.
+    pub fn crate_name(self) -> &'static str {
+        if self == Self::Files { "limn-files" } else { "limn-engine" }
+    }
+
+    /// Names of the glue and of the module itself in [`Module::package`].
+    pub fn files(self) -> [String; 2] {
+        let stem = self.crate_name().replace('-', "_");
+        [format!("{stem}.js"), format!("{stem}_bg.wasm")]
+    }
+
+    /// Its name in URLs, folders and, for an engine, cargo features.
     pub fn id(self) -> &'static str {
         match self {
             Self::WebGpu => "webgpu",
             Self::WebGl => "webgl",
+            Self::Files => "files",
         }
     }
 
@@ -44,7 +58,7 @@ impl Module {
         Self::ALL
             .into_iter()
             .find(|module| module.id() == id)
-            .with_context(|| format!("`{id}` is no module: webgpu or webgl"))
+            .with_context(|| format!("`{id}` is no module: webgpu, webgl or files"))
     }
 
     /// The target folder that it has for itself.
@@ -77,9 +91,6 @@ impl Profile {
     }
 }
 
-/// Names of the glue and of the module itself in [`Module::package`].
-pub const FILES: [&str; 2] = ["limn_engine.js", "limn_engine_bg.wasm"];
-
 /// Builds and binds a module unless it is newer than every source.
 ///
 /// A compile error comes back as an error that holds the compiler's words.
@@ -96,7 +107,7 @@ pub fn build(module: Module, profile: Profile) -> Result<()> {
     say(format!("building the {} module (profile {})", module.id(), profile.id()));
     let wasm = compile(module, profile)?;
     // cargo leaves the file alone when nothing that matters changed; then the glue is good as well.
-    let fresh = matches!((modified(&wasm), modified(&package.join(FILES[1]))), (Some(a), Some(b)) if a < b);
+    let fresh = matches!((modified(&wasm), modified(&package.join(&module.files()[1]))), (Some(a), Some(b)) if a < b);
     if !fresh {
         bind(&wasm, &package, profile)?;
     }
@@ -111,8 +122,10 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     let mut command = process::cargo();
     // `cargo rustc --crate-type`: the library is also an rlib (clippy and native tests want one), and cargo skips
     // link-time optimisation for a library that is both.
-    command.args(["rustc", "--package", "limn-engine", "--lib", "--crate-type", "cdylib"]);
-    command.args(["--no-default-features", "--features", module.id()]);
+    command.args(["rustc", "--package", module.crate_name(), "--lib", "--crate-type", "cdylib"]);
+    if module != Module::Files {
+        command.args(["--no-default-features", "--features", module.id()]);
+    }
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
     command.env("RUSTFLAGS", toolchain::wasm_flags());
     if !process::succeeds(&mut command)? {
@@ -120,7 +133,7 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
         let again = command.args(["--quiet", "--color", "never"]).output()?;
         bail!("the {} module does not build\n\n{}", module.id(), String::from_utf8_lossy(&again.stderr).trim());
     }
-    Ok(target.join(toolchain::WASM).join(profile.id()).join("limn_engine.wasm"))
+    Ok(target.join(toolchain::WASM).join(profile.id()).join(format!("{}.wasm", module.crate_name().replace('-', "_"))))
 }
 
 fn bind(wasm: &Path, package: &Path, profile: Profile) -> Result<()> {

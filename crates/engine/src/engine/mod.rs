@@ -11,10 +11,10 @@ mod work;
 use std::sync::Arc;
 
 use glam::Vec2;
-use js_sys::Uint8Array;
 use limn_document::camera::Camera;
 use limn_document::command::{COMMANDS, Command};
 use limn_document::{Bounds, CommandError, Document, Outcome};
+use limn_formats::parcel::Parcel;
 use limn_mesh::{Mesh, SCHEMES, SHAPES};
 use limn_render::{Gpu, Renderer, Screen, Tier};
 use wasm_bindgen::prelude::*;
@@ -193,9 +193,10 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Replays a link's fragment or a document's text; an empty one is a first visit. Files are those that it may name.
+    /// Replays a link's fragment or a document's text; an empty one is a first visit. The parcel is a file that
+    /// it may name, read and packed.
     /// `notice` says why the engine was replaced, if it was.
-    pub fn replay(&mut self, text: &str, notice: String, names: Vec<String>, bytes: Vec<Uint8Array>) {
+    pub fn replay(&mut self, text: &str, notice: String, parcel: Option<Vec<u8>>) {
         if !notice.is_empty() {
             self.card(Card {
                 id: "fault",
@@ -205,13 +206,28 @@ impl Engine {
                 ..Card::default()
             });
         }
-        self.start(text, open::gather(names, bytes));
+        self.start(text, parcel.and_then(|bytes| self.unpack(&bytes)));
     }
 
-    /// Opens the dropped or chosen files, or with `again` reads the present model's anew.
-    pub fn open(&mut self, names: Vec<String>, bytes: Vec<Uint8Array>, again: bool) {
+    /// The name of the file to look for among dropped ones: one that a link or `text` names, or with `again` the present
+    /// model's.
+    pub fn wanted(&self, text: &str, again: bool) -> Option<String> {
+        self.wanted_file(text, again)
+    }
+
+    /// The most memory that a model may take, in bytes.
+    pub fn budget(&self) -> f64 {
+        self.document.budget() as f64
+    }
+
+    /// Opens a dropped or chosen file that was read and packed, or with `again` the present model's anew.
+    pub fn open(&mut self, parcel: Vec<u8>, again: bool) {
         self.progress_over();
-        self.open_files(open::gather(names, bytes), again);
+        let unpacked = self.unpack(&parcel);
+        drop(parcel);
+        if let Some(parcel) = unpacked {
+            self.open_parcel(parcel, again);
+        }
         self.dirty.state = true;
     }
 
@@ -327,10 +343,11 @@ impl Engine {
         self.show_frame()
     }
 
-    /// The surroundings read an address: its bytes, or why not.
-    pub fn fetched(&mut self, url: &str, turn: u32, bytes: Option<Vec<u8>>, error: &str) {
+    /// The surroundings read an address: the file, read and packed, or why not.
+    pub fn fetched(&mut self, url: &str, turn: u32, parcel: Option<Vec<u8>>, error: &str) {
         self.progress_over();
-        self.take_download(url, turn, bytes, error);
+        let parcel = parcel.and_then(|bytes| self.unpack(&bytes));
+        self.take_download(url, turn, parcel, error);
         self.dirty.state = true;
     }
 
@@ -341,6 +358,16 @@ impl Engine {
 }
 
 impl Engine {
+    fn unpack(&self, bytes: &[u8]) -> Option<Parcel> {
+        let parcel = Parcel::unpack(bytes);
+        if let Err(error) = &parcel {
+            let title = "The file could not be opened".to_owned();
+            let lines = vec![open::sentence(&error.to_string())];
+            self.card(Card { id: "read", kind: "error", title, lines, ..Card::default() });
+        }
+        parcel.ok()
+    }
+
     fn card(&self, card: Card) {
         self.post.send(&Message::Card { card });
     }

@@ -12,10 +12,9 @@
 
 use std::sync::Arc;
 
-use js_sys::Uint8Array;
 use limn_document::command::{Command, parse_script};
 use limn_document::{Document, Outcome, Replayed, Source, Stamp};
-use limn_formats::{Limits, read};
+use limn_formats::parcel::Parcel;
 use wasm_bindgen::JsValue;
 
 use super::Engine;
@@ -23,17 +22,6 @@ use crate::protocol::{Card, Message};
 
 /// What a first visit shows.
 const FIRST: &str = "#1;open+builtin:creature;scheme+catmull-clark;level+2";
-/// The endings of files that are models, the most telling first.
-const MODELS: [&str; 3] = [".gltf", ".glb", ".obj"];
-
-/// Files by name.
-pub(super) type Files = Vec<(String, Vec<u8>)>;
-
-/// Copies the page's files into the engine's memory.
-pub(super) fn gather(names: Vec<String>, bytes: Vec<Uint8Array>) -> Files {
-    names.into_iter().zip(bytes).map(|(name, bytes)| (name, bytes.to_vec())).collect()
-}
-
 /// A source that is on its way.
 pub(super) struct Opening {
     source: Source,
@@ -45,35 +33,18 @@ pub(super) struct Opening {
     turn: u32,
 }
 
-/// The file that the others belong to.
-fn main_file(files: &Files) -> Option<usize> {
-    let rank = |name: &str| {
-        let name = name.to_ascii_lowercase();
-        MODELS.iter().position(|m| name.ends_with(m)).unwrap_or(MODELS.len())
-    };
-    let side = |name: &str| {
-        let name = name.to_ascii_lowercase();
-        [".mtl", ".bin", ".png", ".jpg", ".jpeg", ".webp", ".txt", ".md"].iter().any(|s| name.ends_with(s))
-    };
-    (0..files.len()).min_by_key(|&i| {
-        let name = files.get(i).map_or("", |f| &f.0);
-        // Models before others, shallow folders before deep ones, then by name.
-        (rank(name), side(name), name.matches('/').count(), name.to_owned())
-    })
+/// Whether two names mean the same file: folders and capitals aside.
+fn same_file(a: &str, b: &str) -> bool {
+    let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or(name).to_ascii_lowercase();
+    last(a) == last(b)
 }
 
 impl Engine {
     /// Begins with a link, a document's text, or the first visit's model.
-    pub(super) fn start(&mut self, text: &str, files: Files) {
-        let text = text.trim();
-        let commands = match text {
-            "" | "#" => Document::from_link(FIRST).map_err(|e| e.to_string()),
-            t if t.starts_with("version") || t.starts_with("open") => parse_script(t).map_err(|e| e.to_string()),
-            t => Document::from_link(t).map_err(|e| e.to_string()),
-        };
+    pub(super) fn start(&mut self, text: &str, parcel: Option<Parcel>) {
         self.stop_opening();
-        match commands {
-            Ok(commands) => self.replay_into_new(commands, files),
+        match commands_of(text) {
+            Ok(commands) => self.replay_into_new(commands, parcel),
             Err(error) => self.bad_link(&error),
         }
         if self.document.mesh().is_none() {
@@ -96,15 +67,14 @@ impl Engine {
         });
     }
 
-    fn replay_into_new(&mut self, commands: Vec<Command>, files: Files) {
+    fn replay_into_new(&mut self, commands: Vec<Command>, parcel: Option<Parcel>) {
         let mut document = Document::new(self.document.budget());
         document.set_aspect(self.viewport.aspect());
-        self.go_on(document, &commands, files);
+        self.go_on(document, &commands, parcel);
     }
 
     /// Replays commands into a document that is not shown yet, as far as they go.
-    fn go_on(&mut self, mut document: Document, commands: &[Command], files: Files) {
-        let mut files = Some(files);
+    fn go_on(&mut self, mut document: Document, commands: &[Command], mut parcel: Option<Parcel>) {
         let mut commands = commands.to_vec();
         loop {
             match document.replay(&commands) {
@@ -120,11 +90,9 @@ impl Engine {
                 }
                 Ok(Replayed::Waiting { source, rest }) => {
                     if let Source::File { name, .. } = &source
-                        && let Some(list) = &files
-                        && let Some(at) = list.iter().position(|(n, _)| n == name)
-                        && let Some(list) = files.take()
+                        && let Some(parcel) = parcel.take_if(|p| same_file(&p.name, name))
                     {
-                        if !self.read_into(&mut document, list, at, &source) {
+                        if !self.read_into(&mut document, parcel, &source) {
                             return;
                         }
                         commands = rest;
@@ -170,45 +138,57 @@ impl Engine {
         self.ask(&source);
     }
 
-    /// Files were dropped or chosen.
-    pub(super) fn open_files(&mut self, files: Files, again: bool) {
-        if again {
-            return self.reload(files);
+    /// The file that dropped ones should be searched for: one that a link or `text` names, or, to read it `again`, the
+    /// present one.
+    pub(super) fn wanted_file(&self, text: &str, again: bool) -> Option<String> {
+        let file = |source: &Source| match source {
+            Source::File { name, .. } => Some(name.clone()),
+            _ => None,
+        };
+        if !text.is_empty() {
+            let commands = commands_of(text).ok()?;
+            return commands.iter().rev().find_map(|c| if let Command::Open(source) = c { file(source) } else { None });
         }
-        let Some(main) = main_file(&files) else { return };
-        let name = files.get(main).map_or(String::new(), |f| f.0.clone());
+        if again {
+            return self.document.source().and_then(file);
+        }
+        self.opening.as_ref().and_then(|o| file(&o.source))
+    }
+
+    /// Files were dropped or chosen, and read.
+    pub(super) fn open_parcel(&mut self, parcel: Parcel, again: bool) {
+        if again {
+            return self.reload(parcel);
+        }
         // The file that a link waits for?
         if let Some(opening) = self.opening.take() {
-            let wanted = match &opening.source {
-                Source::File { name: wanted, .. } => {
-                    let last = |n: &str| n.rsplit(['/', '\\']).next().unwrap_or(n).to_ascii_lowercase();
-                    files.iter().position(|(n, _)| last(n) == last(wanted))
-                }
-                _ => None,
-            };
+            let wanted = matches!(&opening.source, Source::File { name, .. } if same_file(name, &parcel.name));
             match (wanted, opening.document) {
-                (Some(at), Some(mut document)) => {
-                    if self.read_into(&mut document, files, at, &opening.source) {
-                        self.go_on(document, &opening.rest, Vec::new());
+                (true, Some(mut document)) => {
+                    if self.read_into(&mut document, parcel, &opening.source) {
+                        self.go_on(document, &opening.rest, None);
                     }
                     return;
                 }
-                (Some(_), None) | (None, None) => self.document.cancel_open(),
-                (None, Some(_)) => {}
+                (_, None) => self.document.cancel_open(),
+                (false, Some(_)) => {}
             }
             self.no_card("ask");
         }
-        let source = Source::File { name, stamp: None };
+        let source = Source::File { name: parcel.name.clone(), stamp: None };
         match self.document.apply(&Command::Open(source.clone()), false) {
-            Ok(_) => {
-                let mut document = std::mem::replace(&mut self.document, Document::new(0));
-                let good = self.read_into(&mut document, files, main, &source);
-                self.document = document;
-                if good {
-                    self.loaded(&source);
-                }
-            }
+            Ok(_) => self.take_parcel(parcel, &source),
             Err(error) => self.refuse("open", &error),
+        }
+    }
+
+    /// Loads a parcel into the present document, which asked for `source`.
+    fn take_parcel(&mut self, parcel: Parcel, source: &Source) {
+        let mut document = std::mem::replace(&mut self.document, Document::new(0));
+        let good = self.read_into(&mut document, parcel, source);
+        self.document = document;
+        if good {
+            self.loaded(source);
         }
     }
 
@@ -220,76 +200,48 @@ impl Engine {
         self.report_card();
     }
 
-    fn reload(&mut self, files: Files) {
+    fn reload(&mut self, parcel: Parcel) {
         match self.document.apply(&Command::Reload, false) {
-            Ok(Outcome::Open(source @ Source::File { .. })) => {
-                let name = source.name().to_owned();
-                let last = |n: &str| n.rsplit(['/', '\\']).next().unwrap_or(n).to_owned();
-                let Some(at) = files.iter().position(|(n, _)| last(n) == name).or_else(|| main_file(&files)) else {
-                    self.document.cancel_open();
-                    let lines = vec!["Open it or drop it again.".to_owned()];
-                    let title = format!("{name} cannot be read again");
-                    return self.card(Card { id: "read", kind: "error", title, lines, ask: name });
-                };
-                let mut document = std::mem::replace(&mut self.document, Document::new(0));
-                let good = self.read_into(&mut document, files, at, &source);
-                self.document = document;
-                if good {
-                    self.loaded(&source);
-                }
-            }
+            Ok(Outcome::Open(source @ Source::File { .. })) => self.take_parcel(parcel, &source),
             Ok(Outcome::Open(source)) => self.fetch_source(source),
             Ok(_) => {}
             Err(error) => self.refuse("reload", &error),
         }
     }
 
-    /// Reads file `at` of `files` and loads it as the source that `document` waits for. A card says what is wrong if it
-    /// cannot.
-    fn read_into(&mut self, document: &mut Document, mut files: Files, at: usize, asked: &Source) -> bool {
-        if at >= files.len() {
-            return false;
-        }
+    /// Loads a parcel as the source that `document` waits for. A card says what is wrong if it cannot.
+    fn read_into(&mut self, document: &mut Document, parcel: Parcel, asked: &Source) -> bool {
         let start = self.clock.now();
-        let (name, bytes) = files.swap_remove(at);
-        let stamp = Some(Stamp::of(&bytes));
+        let Parcel { name, size, hash, result } = parcel;
         let source = match asked {
             Source::Url(_) => asked.clone(),
-            _ => Source::File { name: name.clone(), stamp },
+            _ => Source::File { name: name.clone(), stamp: Some(Stamp { size, hash }) },
         };
-        // What is read has to leave room for what is made of it.
-        let limits = Limits { bytes: Limits::default().bytes.min(document.budget()) };
-        let title = |name: &str| format!("{} could not be opened", name.rsplit('/').next().unwrap_or(name));
-        let (model, warnings) = match read(&name, &bytes, &files, &limits) {
-            Ok(read) => read,
-            Err(error) => {
-                document.cancel_open();
-                let lines = vec![sentence(&error.to_string())];
-                self.card(Card { id: "read", kind: "error", title: title(&name), lines, ..Card::default() });
-                return false;
-            }
+        let loaded = match result {
+            Ok((model, notices)) => document.load(source, model, &notices).map_err(|error| error.to_string()),
+            Err(message) => Err(message),
         };
-        drop((bytes, files));
-        match document.load(source, model, &warnings) {
+        match loaded {
             Ok(_) => {
                 self.times.read = self.clock.now() - start;
                 self.no_card("read");
                 self.no_card("ask");
                 true
             }
-            Err(error) => {
+            Err(message) => {
                 document.cancel_open();
-                let lines = vec![sentence(&error.to_string())];
-                self.card(Card { id: "read", kind: "error", title: title(&name), lines, ..Card::default() });
+                let title = format!("{} could not be opened", name.rsplit('/').next().unwrap_or(&name));
+                let lines = vec![sentence(&message)];
+                self.card(Card { id: "read", kind: "error", title, lines, ..Card::default() });
                 false
             }
         }
     }
 
     /// What came from an address.
-    pub(super) fn take_download(&mut self, url: &str, turn: u32, bytes: Option<Vec<u8>>, error: &str) {
+    pub(super) fn take_download(&mut self, url: &str, turn: u32, parcel: Option<Parcel>, error: &str) {
         let Some(opening) = self.opening.take_if(|o| o.turn == turn) else { return };
-        let Some(bytes) = bytes else {
+        let Some(parcel) = parcel else {
             if opening.document.is_none() {
                 self.document.cancel_open();
             }
@@ -297,21 +249,13 @@ impl Engine {
             let lines = vec![format!("{url}: {error}.")];
             return self.card(Card { id: "read", kind: "error", title, lines, ..Card::default() });
         };
-        let files = vec![(opening.source.name().to_owned(), bytes)];
         match opening.document {
             Some(mut document) => {
-                if self.read_into(&mut document, files, 0, &opening.source) {
-                    self.go_on(document, &opening.rest, Vec::new());
+                if self.read_into(&mut document, parcel, &opening.source) {
+                    self.go_on(document, &opening.rest, None);
                 }
             }
-            None => {
-                let mut document = std::mem::replace(&mut self.document, Document::new(0));
-                let good = self.read_into(&mut document, files, 0, &opening.source);
-                self.document = document;
-                if good {
-                    self.loaded(&opening.source);
-                }
-            }
+            None => self.take_parcel(parcel, &opening.source),
         }
     }
 
@@ -388,6 +332,15 @@ impl Engine {
             self.card(Card { id: "picture", kind: "note", title, lines: vec![sentence(&error)], ..Card::default() });
         }
         self.dirty.picture = true;
+    }
+}
+
+/// The commands of a link's fragment or a document's text; an empty one is the first visit's.
+fn commands_of(text: &str) -> Result<Vec<Command>, String> {
+    match text.trim() {
+        "" | "#" => Document::from_link(FIRST).map_err(|e| e.to_string()),
+        t if t.starts_with("version") || t.starts_with("open") => parse_script(t).map_err(|e| e.to_string()),
+        t => Document::from_link(t).map_err(|e| e.to_string()),
     }
 }
 

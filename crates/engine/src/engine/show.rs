@@ -249,22 +249,8 @@ impl Engine {
             return self.write_picture(file);
         }
         let Some(made) = &self.shown else { return };
-        match self.document.export(&made.refined, file) {
-            Ok(files) => {
-                for out in files {
-                    let ending = out.name.rsplit_once('.').map_or("", |(_, e)| e).to_ascii_lowercase();
-                    let mime = match ending.as_str() {
-                        "obj" => "model/obj",
-                        "mtl" => "model/mtl",
-                        "glb" => "model/gltf-binary",
-                        "png" => "image/png",
-                        "jpg" | "jpeg" => "image/jpeg",
-                        _ => "application/octet-stream",
-                    };
-                    let fields = [("name", JsValue::from(&out.name)), ("mime", JsValue::from(mime))];
-                    self.post.bytes("file", &fields, &out.bytes);
-                }
-            }
+        match self.document.export_packed(&made.refined, file) {
+            Ok(packed) => self.post.bytes("write", &[("name", JsValue::from(file))], &packed),
             Err(error) => self.log(
                 &format!("export {file}"),
                 sentence(&error.to_string()).replace(".obj or .glb", ".obj, .glb or .png"),
