@@ -21,6 +21,7 @@ mod process;
 mod rules;
 mod serve;
 mod server;
+mod shorten;
 mod test;
 mod tidy;
 mod toolchain;

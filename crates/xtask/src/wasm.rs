@@ -11,6 +11,7 @@
 //! profile `dist` links everything afresh, close to a minute a module.
 
 use crate::process::{self, say, seconds};
+use crate::shorten::shorten;
 use crate::{paths, toolchain};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -109,7 +110,7 @@ pub fn build(module: Module, profile: Profile) -> Result<()> {
     // cargo leaves the file alone when nothing that matters changed; then the glue is good as well.
     let fresh = matches!((modified(&wasm), modified(&package.join(&module.files()[1]))), (Some(a), Some(b)) if a < b);
     if !fresh {
-        bind(&wasm, &package, profile)?;
+        bind(module, &wasm, &package, profile)?;
     }
     fs::write(&stamp, b"")?;
     fs::File::options().write(true).open(&stamp)?.set_modified(begun)?;
@@ -136,7 +137,7 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     Ok(target.join(toolchain::WASM).join(profile.id()).join(format!("{}.wasm", module.crate_name().replace('-', "_"))))
 }
 
-fn bind(wasm: &Path, package: &Path, profile: Profile) -> Result<()> {
+fn bind(module: Module, wasm: &Path, package: &Path, profile: Profile) -> Result<()> {
     fs::create_dir_all(package)?;
     let mut bindgen = Bindgen::new();
     bindgen.input_path(wasm).web(true)?.typescript(true);
@@ -145,7 +146,14 @@ fn bind(wasm: &Path, package: &Path, profile: Profile) -> Result<()> {
     if profile == Profile::Dist {
         bindgen.remove_name_section(true).remove_producers_section(true);
     }
-    bindgen.generate(package).with_context(|| format!("wasm-bindgen could not bind {}", paths::shown(wasm)))
+    bindgen.generate(package).with_context(|| format!("wasm-bindgen could not bind {}", paths::shown(wasm)))?;
+    if profile == Profile::Dist {
+        let [glue, binary] = module.files().map(|name| package.join(name));
+        let (short_module, short_glue) = shorten(&fs::read(&binary)?, &fs::read_to_string(&glue)?)?;
+        fs::write(glue, short_glue)?;
+        fs::write(binary, short_module)?;
+    }
+    Ok(())
 }
 
 /// When the newest file changed that a module is made of.
@@ -154,7 +162,7 @@ pub fn newest_source() -> Result<SystemTime> {
     for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"] {
         newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
     }
-    for name in ["mesh", "formats", "document", "render", "engine"] {
+    for name in ["mesh", "formats", "document", "render", "engine", "files"] {
         newest = newest.max(newest_below(&paths::root().join("crates").join(name))?);
     }
     Ok(newest)
