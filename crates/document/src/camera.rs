@@ -327,8 +327,8 @@ impl Camera {
         let center = bounds.center();
         let unit = Camera { distance: 1.0, ..*self }.half_extent(aspect) * (1.0 - MARGIN);
         let mut distance = 0.0_f32;
-        for corner in bounds.corners() {
-            let p = corner - center;
+        for point in bounds.outline() {
+            let p = point - center;
             let across = (p.dot(right).abs() / unit.x).max(p.dot(up).abs() / unit.y);
             let before = match self.projection {
                 Projection::Perspective => p.dot(back),

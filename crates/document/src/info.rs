@@ -102,7 +102,7 @@ impl Info {
         let Counts { vertices, edges, faces, .. } = self.counts;
         let Stats { boundary_loops, components, genus, .. } = self.stats;
         let genus = genus.map_or_else(|| "none (the surface has one side only)".to_owned(), |g| g.to_string());
-        let Bounds { min, max } = self.bounds;
+        let Bounds { min, max, .. } = self.bounds;
         format!(
             "model           {} ({})\n\
              scheme          {}, level {}\n\

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 const WIDE: f32 = 1.6;
 
 fn unit() -> Bounds {
-    Bounds { min: vec3(-1.0, -2.0, -3.0), max: vec3(1.0, 2.0, 3.0) }
+    Bounds::new(vec3(-1.0, -2.0, -3.0), vec3(1.0, 2.0, 3.0))
 }
 
 fn close(a: Vec3, b: Vec3, eps: f32) -> bool {
@@ -183,10 +183,10 @@ fn fingers_keep_what_is_under_them() {
 #[test]
 fn a_point_a_line_and_huge_numbers_give_sound_cameras() {
     for bounds in [
-        Bounds { min: Vec3::ONE, max: Vec3::ONE },
-        Bounds { min: Vec3::ZERO, max: vec3(0.0, 0.0, 5.0) },
-        Bounds { min: Vec3::splat(-1e30), max: Vec3::splat(1e30) },
-        Bounds { min: Vec3::splat(1e-30), max: Vec3::splat(2e-30) },
+        Bounds::new(Vec3::ONE, Vec3::ONE),
+        Bounds::new(Vec3::ZERO, vec3(0.0, 0.0, 5.0)),
+        Bounds::new(Vec3::splat(-1e30), Vec3::splat(1e30)),
+        Bounds::new(Vec3::splat(1e-30), Vec3::splat(2e-30)),
     ] {
         for standard in Standard::ALL {
             let mut camera = Camera::default();
@@ -207,7 +207,7 @@ fn a_camera_follows_a_model_that_is_moved_and_scaled() {
     camera.orbit(vec2(0.1, 0.1));
     let p = vec3(0.5, 1.5, -2.0);
     let before = camera.project(p, WIDE).unwrap();
-    let moved = Bounds { min: unit().min * 3.0 + 7.0, max: unit().max * 3.0 + 7.0 };
+    let moved = Bounds::new(unit().min * 3.0 + 7.0, unit().max * 3.0 + 7.0);
     camera.follow(&unit(), &moved, WIDE);
     let after = camera.project(p * 3.0 + 7.0, WIDE).unwrap();
     assert!((before - after).truncate().length() < 1e-5);

@@ -125,8 +125,7 @@ impl Engine {
         // The near and far planes hold what is shown: the surface, and the cage around it.
         let mut bounds = self.document.bounds();
         if let Some(surface) = self.renderer.surface().map(limn_render::Surface::bounds).filter(|b| !b.is_empty()) {
-            bounds =
-                Bounds { min: bounds.min.min(Vec3::from(surface.min)), max: bounds.max.max(Vec3::from(surface.max)) };
+            bounds = Bounds::new(bounds.min.min(Vec3::from(surface.min)), bounds.max.max(Vec3::from(surface.max)));
         }
         let camera = &view.camera;
         let (near, far) = camera.clip_range(&bounds);

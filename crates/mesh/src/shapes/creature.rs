@@ -217,11 +217,11 @@ fn pose([x, y, z]: [f64; 3]) -> [f64; 3] {
         t * t * (3.0 - 2.0 * t)
     };
     // The head turns about an upright axis through the neck.
-    let turn = 0.35 * ease((y - 1.0) / 0.5) * ease((z - 0.1) / 0.4);
+    let turn = -0.35 * ease((y - 1.0) / 0.5) * ease((z - 0.1) / 0.4);
     let (sin, cos) = libm::sincos(turn);
     let (dx, dz) = (x, z - 0.6);
     let (x, z) = if z > 0.1 { (dx * cos + dz * sin, 0.6 + dz * cos - dx * sin) } else { (x, z) };
     let swing = (-0.5 - z).max(0.0);
-    let x = x - 0.45 * swing * swing;
+    let x = x + 0.45 * swing * swing;
     [0.8 * x, 0.8 * y, 0.8 * z + 0.12]
 }
