@@ -6,6 +6,7 @@
 use crate::arguments::Arguments;
 use crate::paths;
 use crate::process::say;
+use crate::shorten::strip;
 use crate::wasm::{self, Module, Profile};
 use anyhow::{Context, Result};
 use std::fs;
@@ -38,6 +39,11 @@ pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
         // Type declarations are for editors and `tidy`.
         if !from.to_string_lossy().ends_with(".d.ts") {
             copy(&from, &fresh.join(name))?;
+        }
+        let to = fresh.join(name);
+        let text = to.extension().is_some_and(|extension| extension == "js" || extension == "css");
+        if profile == Profile::Dist && text {
+            fs::write(&to, strip(&fs::read_to_string(&to)?))?;
         }
     }
     for module in Module::ALL {
