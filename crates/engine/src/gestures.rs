@@ -161,10 +161,9 @@ impl Gestures {
         camera: &mut Camera,
         bounds: &Bounds,
     ) -> bool {
-        let Some(index) = self.down.iter().position(|p| p.id == id) else { return false };
         let before = self.down.clone();
-        self.down[index].at = at;
-        let delta = (at - before[index].at) / view.shorter();
+        let Some(moved) = self.down.iter_mut().find(|p| p.id == id) else { return false };
+        let delta = (at - std::mem::replace(&mut moved.at, at)) / view.shorter();
         if delta == Vec2::ZERO {
             return false;
         }

@@ -247,7 +247,9 @@ impl Making {
             Stage::Over => (Stage::Over, 1),
         };
         self.stage = next;
-        self.spent[kind] += clock() - start;
+        if let Some(spent) = self.spent.get_mut(kind) {
+            *spent += clock() - start;
+        }
         Ok(Step::More)
     }
 }

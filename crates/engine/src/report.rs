@@ -131,7 +131,8 @@ impl Facts {
         let Some(mesh) = document.mesh() else { return Vec::new() };
         let (counts, s) = (mesh.counts(), &self.stats);
         let [low, high] = s.bounds;
-        let side = |i: usize| four_digits(high[i] - low[i]);
+        let [x, y, z] =
+            [(low[0], high[0]), (low[1], high[1]), (low[2], high[2])].map(|(low, high)| four_digits(high - low));
         let mut rows = vec![
             Fact { label: "Vertices", value: grouped(counts.vertices) },
             Fact { label: "Edges", value: grouped(counts.edges) },
@@ -139,7 +140,7 @@ impl Facts {
             Fact { label: "Open rims", value: grouped(s.boundary_loops) },
             Fact { label: "Parts", value: grouped(s.components) },
             Fact { label: "Genus", value: s.genus.map_or("none, it has one side only".to_owned(), grouped) },
-            Fact { label: "Size", value: format!("{} × {} × {}", side(0), side(1), side(2)) },
+            Fact { label: "Size", value: format!("{x} × {y} × {z}") },
         ];
         let model = document.model();
         let named = [

@@ -8,7 +8,7 @@
 //!   engine ── Export as bytes ──► worker: write ── files ──► page
 //! ```
 //!
-//! Two calls, [`read`] and [`write`]; their wasm forms take and give byte arrays ([`limn_formats::parcel`]).
+//! Two calls, [`read`] and [`write()`]; their wasm forms take and give byte arrays ([`limn_formats::parcel`]).
 
 use limn_document::Stamp;
 use limn_document::export::ExportFormat;

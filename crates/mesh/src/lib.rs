@@ -1,7 +1,7 @@
 //! limn-mesh: the kernel of Limn. Meshes, subdivision schemes, and refinement to a level.
 //!
 //! Everything follows from one idea: **a scheme is a split plus weights**. A [`split`] makes the children's connectivity by
-//! index arithmetic; a [`scheme`] says which points with which weights make every new point. The statement is written once
+//! index arithmetic; a [`scheme`](mod@scheme) says which points with which weights make every new point. The statement is written once
 //! and runs as a fast evaluator or records sparse rows ([`sink`]).
 //!
 //! ```text

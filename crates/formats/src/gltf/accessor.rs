@@ -119,19 +119,20 @@ fn cut<'s>(
 ) -> Result<(&'s [u8], usize), ReadError> {
     let offset = whole(holder, "byteOffset", place)?.unwrap_or(0);
     let (bytes, stride) = source.view(view)?;
-    let stride = stride.unwrap_or(size);
-    if stride < size {
+    let stride = stride.unwrap_or(size as u64);
+    if stride < size as u64 {
         return Err(bad(place, format!("its elements of {size} bytes do not fit the byteStride of {stride}")));
     }
     // The last element needs no padding up to the stride.
     let need = match count.checked_sub(1) {
         None => Some(0),
-        Some(gaps) => gaps.checked_mul(stride as u64).and_then(|n| n.checked_add(size as u64)),
+        Some(gaps) => gaps.checked_mul(stride).and_then(|n| n.checked_add(size as u64)),
     };
     let end = need.and_then(|need| need.checked_add(offset));
     let data = end.filter(|end| *end <= bytes.len() as u64).and_then(|end| bytes.get(offset as usize..end as usize));
     match data {
-        Some(data) => Ok((data, stride)),
+        // A stride that 32 bits cannot hold can only belong to a single element.
+        Some(data) => Ok((data, usize::try_from(stride).unwrap_or(usize::MAX))),
         None => {
             let have = bytes.len();
             let end = end.map_or("more than 2^64".to_owned(), |end| end.to_string());

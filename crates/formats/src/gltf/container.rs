@@ -94,7 +94,7 @@ impl<'a> Source<'a> {
     }
 
     /// The bytes of a buffer view and its stride, if it states one.
-    pub fn view(&self, number: usize) -> Result<(&[u8], Option<usize>), ReadError> {
+    pub fn view(&self, number: usize) -> Result<(&[u8], Option<u64>), ReadError> {
         let place = format_args!("bufferViews[{number}]");
         let Some(view) = list(&self.root, "bufferViews").get(number) else {
             return Err(bad(place, "there is no such buffer view"));
@@ -103,7 +103,7 @@ impl<'a> Source<'a> {
             index(view, "buffer", self.buffers.len(), place)?.ok_or_else(|| bad(place, "it names no buffer"))?;
         let from = whole(view, "byteOffset", place)?.unwrap_or(0);
         let length = whole(view, "byteLength", place)?.ok_or_else(|| bad(place, "it has no byteLength"))?;
-        let stride = whole(view, "byteStride", place)?.map(|s| usize::try_from(s).unwrap_or(usize::MAX));
+        let stride = whole(view, "byteStride", place)?;
         let bytes = self.buffer(buffer)?;
         let cut =
             from.checked_add(length).and_then(|end| bytes.get(usize::try_from(from).ok()?..usize::try_from(end).ok()?));
