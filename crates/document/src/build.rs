@@ -37,12 +37,7 @@ pub struct Remark {
 
 impl Remark {
     pub(crate) fn new(text: &str, minor: bool) -> Remark {
-        let mut chars = text.chars();
-        let mut text: String = chars.next().into_iter().flat_map(char::to_uppercase).chain(chars).collect();
-        if !text.ends_with(['.', '!', '?']) {
-            text.push('.');
-        }
-        Remark { text, minor }
+        Remark { text: crate::words::sentence(text), minor }
     }
 }
 

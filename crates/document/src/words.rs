@@ -92,6 +92,21 @@ pub(crate) fn shorten(text: &str) -> String {
     short
 }
 
+/// A message as a sentence: with a full stop, and with a capital unless it begins with a name (`cut.glb`, `accessors[0]`).
+pub fn sentence(text: &str) -> String {
+    let first = text.split_whitespace().next().unwrap_or_default();
+    let is_name = first.contains('[') || first.trim_end_matches(['.', ':', ',']).contains('.');
+    let mut chars = text.chars();
+    let mut out: String = match chars.next() {
+        Some(c) if !is_name => c.to_uppercase().chain(chars).collect(),
+        _ => text.to_owned(),
+    };
+    if !out.ends_with(['.', '!', '?']) {
+        out.push('.');
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,5 +129,13 @@ mod tests {
             prop_assert!(!line.contains('\n'));
             prop_assert_eq!(split(&line).unwrap(), words);
         }
+    }
+
+    #[test]
+    fn names_keep_their_letters_in_sentences() {
+        assert_eq!(sentence("line 3 is odd"), "Line 3 is odd.");
+        assert_eq!(sentence("cut.glb is damaged."), "cut.glb is damaged.");
+        assert_eq!(sentence("accessors[0]: it is short"), "accessors[0]: it is short.");
+        assert_eq!(sentence("done. It is"), "Done. It is.");
     }
 }

@@ -362,7 +362,7 @@ impl Engine {
         let parcel = Parcel::unpack(bytes);
         if let Err(error) = &parcel {
             let title = "The file could not be opened".to_owned();
-            let lines = vec![open::sentence(&error.to_string())];
+            let lines = vec![limn_document::words::sentence(&error.to_string())];
             self.card(Card { id: "read", kind: "error", title, lines, ..Card::default() });
         }
         parcel.ok()

@@ -13,6 +13,7 @@
 use std::sync::Arc;
 
 use limn_document::command::{Command, parse_script};
+use limn_document::words::sentence;
 use limn_document::{Document, Outcome, Replayed, Source, Stamp};
 use limn_formats::parcel::Parcel;
 use wasm_bindgen::JsValue;
@@ -342,14 +343,4 @@ fn commands_of(text: &str) -> Result<Vec<Command>, String> {
         t if t.starts_with("version") || t.starts_with("open") => parse_script(t).map_err(|e| e.to_string()),
         t => Document::from_link(t).map_err(|e| e.to_string()),
     }
-}
-
-/// With a capital and a full stop.
-pub(super) fn sentence(text: &str) -> String {
-    let mut chars = text.chars();
-    let mut out: String = chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or_default();
-    if !out.ends_with(['.', '!', '?']) {
-        out.push('.');
-    }
-    out
 }

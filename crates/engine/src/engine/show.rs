@@ -10,9 +10,9 @@ use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
 
 use super::Engine;
-use super::open::sentence;
 use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
 use crate::{controls, report};
+use limn_document::words::sentence;
 
 /// The page's grounds, top and bottom, as web/base.css has them.
 const DARK: [[f32; 3]; 2] = [[0.118, 0.129, 0.149], [0.067, 0.071, 0.082]];

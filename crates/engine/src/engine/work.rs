@@ -5,11 +5,11 @@ use std::sync::Arc;
 use limn_document::view::Shading;
 use limn_mesh::{Connectivity, Mesh};
 
-use super::open::sentence;
 use super::{Engine, Known};
 use crate::making::{MOST_FLAT, Making, Parts, Step};
 use crate::protocol::{Card, Message};
 use crate::report::Facts;
+use limn_document::words::sentence;
 
 /// Work shorter than this, in milliseconds, is not talked about.
 const QUIET: f64 = 200.0;
