@@ -11,7 +11,7 @@
 //!
 //! Cost: about 20 ns an output face. Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Info, Scheme, Tags, boundary_arrival, cubic_boundary};
+use super::{Accepts, Info, Scheme, Tags, face_centroids, kept_or_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -34,14 +34,7 @@ impl Scheme for CatmullClark {
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         let face_point = split.first_face_point(c);
-        sink.pass(face_point, c.faces(), |f, row| {
-            let corners = c.face_half_edges(f);
-            let n = corners.len() as f64;
-            for h in corners {
-                row.vertex(c.origin(h), 1.0);
-            }
-            row.scale(1.0 / n);
-        });
+        face_centroids(c, split, sink);
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
             let (a, b, twin) = (c.origin(h), c.origin(c.next(h)), c.twin(h));
@@ -56,11 +49,7 @@ impl Scheme for CatmullClark {
             }
         });
         sink.pass(0, c.vertices(), |v, row| {
-            if tags.is_sharp(c, v) {
-                row.vertex(v, 1.0);
-            } else if let Some(arriving) = boundary_arrival(c, v) {
-                cubic_boundary(c, v, arriving, row);
-            } else {
+            if !kept_or_curve(c, v, tags, row) {
                 let mut n = 0u32;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);

@@ -13,7 +13,7 @@
 //!
 //! Cost: about 8 ns an output face. Limit: it never smooths.
 
-use super::{Accepts, Info, Scheme, Tags};
+use super::{Accepts, Info, Scheme, Tags, face_centroids};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -36,14 +36,7 @@ impl Scheme for Linear {
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {
         if split == Split::Quad {
-            sink.pass(split.first_face_point(c), c.faces(), |f, row| {
-                let corners = c.face_half_edges(f);
-                let n = corners.len() as f64;
-                for h in corners {
-                    row.vertex(c.origin(h), 1.0);
-                }
-                row.scale(1.0 / n);
-            });
+            face_centroids(c, split, sink);
         }
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);

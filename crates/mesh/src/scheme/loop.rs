@@ -14,7 +14,7 @@
 //!
 //! Cost: about 12 ns an output face (half a vertex each). Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Info, Scheme, Tags, boundary_arrival, cubic_boundary};
+use super::{Accepts, Info, Scheme, Tags, kept_or_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -64,11 +64,7 @@ impl Scheme for Loop {
             }
         });
         sink.pass(0, c.vertices(), |v, row| {
-            if tags.is_sharp(c, v) {
-                row.vertex(v, 1.0);
-            } else if let Some(arriving) = boundary_arrival(c, v) {
-                cubic_boundary(c, v, arriving, row);
-            } else {
+            if !kept_or_curve(c, v, tags, row) {
                 let mut n = 0u32;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);

@@ -19,7 +19,7 @@ pub use catmull_clark::CatmullClark;
 pub use linear::Linear;
 pub use loop_::Loop;
 
-use crate::sink::{Cursor, Eval, Record, Sink, TakeRow};
+use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
@@ -178,18 +178,38 @@ impl Entry {
     }
 }
 
-/// The boundary curve rule shared by Catmull-Clark and Loop, the uniform cubic B-spline: 3/4 of the vertex, 1/8 of each
-/// neighbour along the boundary. Neighbours first: their sum does not depend on the side, so copies of a split vertex
-/// stay equal.
+/// The pass that puts every face point at its face's centroid.
 #[inline(always)]
-fn cubic_boundary<C: Connectivity>(c: &C, v: u32, arriving: u32, row: &mut impl crate::sink::Row) {
-    row.vertex(c.origin(c.next(c.vertex_half_edge(v))), 0.125);
-    row.vertex(c.origin(arriving), 0.125);
-    row.vertex(v, 0.75);
+fn face_centroids<C: Connectivity, K: Sink>(c: &C, split: Split, sink: &mut K) {
+    sink.pass(split.first_face_point(c), c.faces(), |f, row| {
+        let corners = c.face_half_edges(f);
+        let n = corners.len() as f64;
+        for h in corners {
+            row.vertex(c.origin(h), 1.0);
+        }
+        row.scale(1.0 / n);
+    });
 }
 
-/// The arriving boundary half-edge at `v`, if `v` lies on a boundary. Cost: the valence there, one step elsewhere.
+/// States the rule of `v` if it is sharp, or lies on a boundary; says whether it does.
+///
+/// A boundary is the uniform cubic B-spline of its curve, in Catmull-Clark and Loop alike: 3/4 of the vertex, 1/8 of each
+/// neighbour along it. Neighbours first: their sum does not depend on the side, so copies of a split vertex stay equal.
+/// Cost: the valence on a boundary, one step elsewhere.
 #[inline(always)]
-fn boundary_arrival<C: Connectivity>(c: &C, v: u32) -> Option<u32> {
-    if is_boundary(c.twin(c.vertex_half_edge(v))) { c.turn(v, |_| {}) } else { None }
+fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: Tags<'_>, row: &mut impl Row) -> bool {
+    if tags.is_sharp(c, v) {
+        row.vertex(v, 1.0);
+        return true;
+    }
+    let start = c.vertex_half_edge(v);
+    if !is_boundary(c.twin(start)) {
+        return false;
+    }
+    if let Some(arriving) = c.turn(v, |_| {}) {
+        row.vertex(c.origin(c.next(start)), 0.125);
+        row.vertex(c.origin(arriving), 0.125);
+        row.vertex(v, 0.75);
+    }
+    true
 }
