@@ -244,7 +244,8 @@ export function createHost(post) {
         void parcelOf(message.files, "", again).then((parcel) => {
           // Cancelled, or something else was dropped since.
           if (mine !== asked) return;
-          if (parcel) enter((e) => e.open(parcel, again));
+          if (parcel || (again && !message.files.length)) enter((e) => e.open(parcel, again));
+          post({ type: "taken" });
           if (size > TALKED_ABOUT) post({ type: "progress", what: "", done: 0, cancel: false });
         });
         break;

@@ -63,7 +63,9 @@ export type FromEngine =
   | { type: "fault"; message: string; kind: "trap" | "renderer" }
   /** The first picture is on the canvas: an older canvas can go. */
   | { type: "drawn" }
-  | { type: "pong" };
+  | { type: "pong" }
+  /** The files of the last `open` or `reload` were read; the next state that is not busy shows them, or why not. */
+  | { type: "taken" };
 
 /** Sent once, when the engine is ready to take commands: everything that the page's controls are made from. */
 export interface Hello {
@@ -213,7 +215,7 @@ export interface Engine {
   replay(text: string, notice: string, parcel: Uint8Array | undefined): void;
   wanted(text: string, again: boolean): string | undefined;
   budget(): number;
-  open(parcel: Uint8Array, again: boolean): void;
+  open(parcel: Uint8Array | undefined, again: boolean): void;
   command(text: string, echo: boolean, drag: boolean): void;
   input(batch: Float32Array): void;
   resize(width: number, height: number, scale: number, insets: number[]): void;

@@ -25,6 +25,7 @@ export class Supervisor {
   /** @type {Worker | { terminate(): void, postMessage(message: ToEngine): void } | null} */ engine = null;
   /** @type {HTMLCanvasElement | null} */ #canvas = null;
   /** @type {NamedFile[]} */ #files = [];
+  /** Whether they were read. */ #taken = false;
   /** Files that are on their way: they become the source once the engine shows them. @type {NamedFile[] | null} */ #coming = null;
   /** The text of the last state with nothing going on, and the part of it that opens the model. */
   #settled = "";
@@ -91,6 +92,7 @@ export class Supervisor {
   send(message) {
     if (message.type === "open" || message.type === "reload") {
       this.#coming = message.files;
+      this.#taken = false;
       this.#reading = true;
       message = { ...message, files: message.files.map(plain) };
     }
@@ -127,13 +129,21 @@ export class Supervisor {
       return;
     }
     if (message.type === "drawn") this.#retire();
+    if (message.type === "taken") {
+      this.#taken = true;
+      return;
+    }
     if (message.type === "progress") this.#reading = message.what.startsWith("Reading");
     if (message.type === "state" && !message.busy) {
       this.#reading = false;
       this.#settled = message.text;
       this.#origin = message.origin;
-      if (this.#coming && message.model?.reload === "file") this.#files = this.#coming;
-      this.#coming = null;
+      if (this.#coming && this.#taken) {
+        // A file that could not be opened leaves the last model, and that model's files.
+        const shown = this.#coming.some(({ name }) => message.origin.includes(name.split("/").pop() ?? name));
+        if (shown && message.model?.reload === "file") this.#files = this.#coming;
+        this.#coming = null;
+      }
       if (performance.now() - this.#since > HEALTHY) this.#attempt = 0;
     }
     this.receive(message);

@@ -220,13 +220,15 @@ impl Engine {
         self.document.budget() as f64
     }
 
-    /// Opens a dropped or chosen file that was read and packed, or with `again` the present model's anew.
-    pub fn open(&mut self, parcel: Vec<u8>, again: bool) {
+    /// Opens a dropped or chosen file that was read and packed, or with `again` the present model anew: from the parcel if
+    /// it came from a file.
+    pub fn open(&mut self, parcel: Option<Vec<u8>>, again: bool) {
         self.progress_over();
-        let unpacked = self.unpack(&parcel);
-        drop(parcel);
-        if let Some(parcel) = unpacked {
-            self.open_parcel(parcel, again);
+        let unpacked = parcel.and_then(|bytes| self.unpack(&bytes));
+        match unpacked {
+            _ if again => self.reload(unpacked),
+            Some(parcel) => self.open_parcel(parcel),
+            None => {}
         }
         self.dirty.state = true;
     }

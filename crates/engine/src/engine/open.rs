@@ -157,10 +157,7 @@ impl Engine {
     }
 
     /// Files were dropped or chosen, and read.
-    pub(super) fn open_parcel(&mut self, parcel: Parcel, again: bool) {
-        if again {
-            return self.reload(parcel);
-        }
+    pub(super) fn open_parcel(&mut self, parcel: Parcel) {
         // The file that a link waits for?
         if let Some(opening) = self.opening.take() {
             let wanted = matches!(&opening.source, Source::File { name, .. } if same_file(name, &parcel.name));
@@ -201,9 +198,19 @@ impl Engine {
         self.report_card();
     }
 
-    fn reload(&mut self, parcel: Parcel) {
+    /// Reads the present model again.
+    pub(super) fn reload(&mut self, parcel: Option<Parcel>) {
         match self.document.apply(&Command::Reload, false) {
-            Ok(Outcome::Open(source @ Source::File { .. })) => self.take_parcel(parcel, &source),
+            Ok(Outcome::Open(source @ Source::File { .. })) => match parcel {
+                Some(parcel) => self.take_parcel(parcel, &source),
+                None => {
+                    self.document.cancel_open();
+                    let name = source.name().to_owned();
+                    let lines = vec!["Open it or drop it again.".to_owned()];
+                    let title = format!("{name} cannot be read again");
+                    self.card(Card { id: "read", kind: "error", title, lines, ask: name });
+                }
+            },
             Ok(Outcome::Open(source)) => self.fetch_source(source),
             Ok(_) => {}
             Err(error) => self.refuse("reload", &error),
