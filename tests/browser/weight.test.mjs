@@ -7,7 +7,7 @@ import { describe, test } from "node:test";
 import { QUICK, RENDERERS, launch, picture, serveSite, visit } from "./harness.mjs";
 
 const GOAL = { webgpu: 230_000, webgl: 800_000 };
-const BUDGET = { webgpu: 300_000, webgl: 800_000 };
+const BUDGET = { webgpu: 270_000, webgl: 800_000 };
 
 describe("the page's weight", { skip: QUICK && "a quick build is not what ships" }, () => {
   for (const renderer of RENDERERS) {
