@@ -410,8 +410,11 @@ impl Camera {
 
     /// The camera as a link holds it: angles to 0.1 degree, the distance to four digits, the target to about a two
     /// thousandth of the distance. That moves the picture by less than a pixel or two, and is short. Twice is the same as
-    /// once.
+    /// once. A link holds a named view by its name alone: that one stays as it frames the model.
     pub fn quantised(&self) -> Camera {
+        if self.standard.is_some() {
+            return *self;
+        }
         let pose = PoseText::of(self);
         let number = |text: &str, or: f32| text.parse().unwrap_or(or);
         Camera {

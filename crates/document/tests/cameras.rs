@@ -239,6 +239,17 @@ fn poses_in_links_are_short() {
     assert_eq!(text, ["camera=33.3,0,45680,123460,0,10"]);
 }
 
+#[test]
+fn rounding_leaves_a_named_view_as_it_frames_the_model() {
+    // A link says "home": whoever follows it frames the model anew, and must see what the sender sees at rest.
+    let bounds = Bounds::new(vec3(-0.123_456, -0.3, -0.7), vec3(0.234_567, 0.9, 0.8));
+    let mut camera = Camera::default();
+    camera.set_standard(Standard::Home, &bounds, 1.37);
+    assert_eq!(camera.quantised(), camera);
+    camera.standard = None;
+    assert_ne!(camera.quantised(), camera);
+}
+
 fn camera() -> impl Strategy<Value = Camera> {
     let number = || prop_oneof![-10.0_f32..10.0, -1e6_f32..1e6];
     (-180.0_f32..180.0, -90.0_f32..=90.0, prop_oneof![0.01_f32..100.0, 1e-9_f32..1e9], number(), number(), number())

@@ -433,7 +433,7 @@ impl Engine {
 
     /// Moves the camera there, smoothly unless motion is unwelcome.
     fn go(&mut self, to: Camera) {
-        let to = if to.standard.is_some() { to } else { to.quantised() };
+        let to = to.quantised();
         let from = self.document.view().camera;
         if self.calm || self.shown.is_none() || from.projection != to.projection || from.up != to.up {
             self.tween = None;
