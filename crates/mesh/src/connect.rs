@@ -11,6 +11,7 @@
 //! Faces are turned by a breadth-first walk over pairs, each part keeping the orientation of its majority. A pair that
 //! still disagrees (a Moebius band) is cut: the surface has one side. Cost: linear, about 15 ns a side.
 
+use crate::order::{key, sort_keys};
 use std::ops::Range;
 
 pub(crate) const UNMATCHED: u32 = u32::MAX;
@@ -64,24 +65,25 @@ fn pair(corners: &[u32], target: &[u32], classes: usize, m: &mut Matching) -> bo
         start[v + 1] += start[v];
     }
     let mut fill = start.clone();
-    let mut sorted = vec![[0u32; 2]; corners.len()]; // (larger vertex, half-edge) by smaller vertex
+    let mut sorted = vec![0u64; corners.len()]; // keys of (larger vertex, half-edge) by smaller vertex
     for (h, (&a, &b)) in corners.iter().zip(target).enumerate() {
         let at = &mut fill[a.min(b) as usize];
-        sorted[*at as usize] = [a.max(b), h as u32];
+        sorted[*at as usize] = key(a.max(b), h as u32);
         *at += 1;
     }
     let mut same_way = false;
     for v in 0..classes {
         let bucket = &mut sorted[start[v] as usize..start[v + 1] as usize];
-        bucket.sort_unstable();
-        for run in bucket.chunk_by(|x, y| x[0] == y[0]) {
+        sort_keys(bucket);
+        for run in bucket.chunk_by(|x, y| x >> 32 == y >> 32) {
             match *run {
-                [[_, h], [_, t]] => {
+                [h, t] => {
+                    let (h, t) = (h as u32, t as u32);
                     (m.mate[h as usize], m.mate[t as usize]) = (t, h);
                     same_way |= corners[h as usize] == corners[t as usize];
                 }
                 [_] => {}
-                _ => m.non_manifold.push([v as u32, run[0][0]]),
+                _ => m.non_manifold.push([v as u32, (run[0] >> 32) as u32]),
             }
         }
     }

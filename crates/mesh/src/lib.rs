@@ -27,6 +27,7 @@
 
 mod connect;
 pub mod mesh;
+pub mod order;
 pub mod pair;
 pub mod refine;
 pub mod refined;
@@ -42,7 +43,7 @@ pub mod triangulate;
 mod weld;
 
 pub use mesh::{Mesh, Stats, TopologyError};
-pub use refine::{Job, Plan, Prediction, RefineError, grouped, predict, refine};
+pub use refine::{Job, Plan, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
 pub use scheme::{Accepts, Boundary, Entry, Info, SCHEMES, scheme};

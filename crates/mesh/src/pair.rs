@@ -17,6 +17,7 @@
 //! Edges are found by two counting sorts, so all but the sort of the rest by quality is linear.
 //! The limits on fold and shape follow the "tris to quads" tools of modelling programs.
 
+use crate::order;
 use crate::soup::{NONE, Soup};
 
 /// Cosine of the largest fold between two triangles that may become a quad (45 degrees).
@@ -270,14 +271,19 @@ impl<'a> Matching<'a> {
     /// Matches what is left, by quality plus lead; ties by the lowest faces.
     fn match_greedily(&mut self) {
         let free = |p: &Pair| p.quality > 0.0 && p.faces.iter().all(|&f| self.is_free(f));
-        let mut rest: Vec<u32> = (0..self.pairs.len() as u32).filter(|&i| free(&self.pairs[i as usize])).collect();
         let pairs = self.pairs;
-        let score: Vec<f64> = (0..pairs.len() as u32).map(|i| pairs[i as usize].quality + self.lead(i)).collect();
-        rest.sort_by(|&a, &b| {
-            let (a, b) = (a as usize, b as usize);
-            score[b].total_cmp(&score[a]).then(pairs[a].faces.cmp(&pairs[b].faces))
-        });
-        for i in rest {
+        // First by faces, so that the second sort, whose ties fall by number, has their rank for one.
+        let mut ranks: Vec<(u64, u32)> = (0..pairs.len() as u32)
+            .filter(|&i| free(&pairs[i as usize]))
+            .map(|i| (order::key(pairs[i as usize].faces[0], pairs[i as usize].faces[1]), i))
+            .collect();
+        order::sort(&mut ranks);
+        let score = |i: u32| pairs[i as usize].quality + self.lead(i);
+        let mut rest: Vec<(u64, u32)> =
+            ranks.iter().enumerate().map(|(rank, &(_, i))| (!order::float_key(score(i)), rank as u32)).collect();
+        order::sort(&mut rest);
+        for (_, rank) in rest {
+            let i = ranks[rank as usize].1;
             if pairs[i as usize].faces.iter().all(|&f| self.is_free(f)) {
                 self.choose(i);
             }

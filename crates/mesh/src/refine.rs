@@ -69,16 +69,26 @@ pub enum RefineError {
 
 fn too_large(p: Option<Prediction>, budget: u64) -> String {
     let Some(p) = p else { return "would make more than 2^64 faces".to_owned() };
-    let gb = |b: u64| b as f64 / 1e9;
     if p.counts.corners >= LARGEST && p.bytes <= budget {
         return format!("would make {} faces, more than 32-bit numbers can connect", grouped(p.counts.faces));
     }
     format!(
-        "would make {} faces and take {:.1} GB, and the budget is {:.1} GB",
+        "would make {} faces and take {}, and the budget is {}",
         grouped(p.counts.faces),
-        gb(p.bytes),
-        gb(budget)
+        memory(p.bytes),
+        memory(budget)
     )
+}
+
+/// An amount of memory, as people read it: "52 kB", "1.4 MB", "18 MB", "1.5 GB".
+pub fn memory(bytes: u64) -> String {
+    let tenths = |unit: u64| bytes.saturating_add(unit / 20) / (unit / 10);
+    match bytes {
+        1_000_000_000.. => format!("{}.{} GB", tenths(1_000_000_000) / 10, tenths(1_000_000_000) % 10),
+        10_000_000.. => format!("{} MB", bytes.saturating_add(500_000) / 1_000_000),
+        100_000.. => format!("{}.{} MB", tenths(1_000_000) / 10, tenths(1_000_000) % 10),
+        _ => format!("{} kB", bytes.div_ceil(1_000)),
+    }
 }
 
 /// A count with commas, as people read it.

@@ -20,6 +20,7 @@
 //! G. H. Meisters, "Polygons have ears", American Mathematical Monthly 82 (1975); M. E. Newell's normal as in I. E. Sutherland,
 //! R. F. Sproull and R. A. Schumacker, "A characterization of ten hidden-surface algorithms", Computing Surveys 6 (1974).
 
+use crate::order;
 use crate::soup::Soup;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -219,14 +220,15 @@ impl<'a> Clipper<'a> {
             patience: PATIENCE + 1024 * n as u64,
             rule: Rule::Strict,
         };
+        let mut sorted = Vec::new();
         for i in 0..n as u32 {
             if !clipper.is_convex(i) {
                 clipper.blocks[i as usize] = true;
-                clipper.sorted.push(i);
+                sorted.push((order::float_key(clipper.flat[i as usize][0]), i));
             }
         }
-        let flat = &clipper.flat;
-        clipper.sorted.sort_by(|&a, &b| flat[a as usize][0].total_cmp(&flat[b as usize][0]).then(a.cmp(&b)));
+        order::sort(&mut sorted);
+        clipper.sorted = sorted.into_iter().map(|(_, i)| i).collect();
         clipper
     }
 

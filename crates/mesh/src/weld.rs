@@ -98,7 +98,7 @@ fn exact(positions: &[[f32; 3]], parts: &[u32]) -> Vec<u32> {
 
 fn relative(positions: &[[f32; 3]], parts: &[u32], fraction: f32) -> Vec<u32> {
     let [low, high] = bounds(positions).map(|c| c.map(f64::from));
-    let diagonal = libm::sqrt((0..3).map(|k| (high[k] - low[k]) * (high[k] - low[k])).sum());
+    let diagonal = (0..3).map(|k| (high[k] - low[k]) * (high[k] - low[k])).sum::<f64>().sqrt();
     let tolerance = diagonal * f64::from(fraction);
     if tolerance <= 0.0 || tolerance.is_nan() {
         return exact(positions, parts);

@@ -7,8 +7,8 @@
 //!   │   │   │   │          │ / +─+ \ │
 //! ```
 
+use crate::order;
 use crate::soup::Soup;
-use std::collections::BTreeMap;
 
 /// Points and quads.
 #[derive(Clone, Debug, Default)]
@@ -27,12 +27,13 @@ impl Cage {
             .flat_map(|&f| (0..4).map(move |i| (f, i)))
             .map(|(f, i)| (self.quads[f][i], self.quads[f][(i + 1) % 4]))
             .collect();
-        let border: BTreeMap<u32, u32> = edges.iter().filter(|&&(a, b)| !edges.contains(&(b, a))).copied().collect();
+        let border: Vec<(u32, u32)> = edges.iter().filter(|&&(a, b)| !edges.contains(&(b, a))).copied().collect();
+        let after = |v: u32| border.iter().find(|e| e.0 == v).map_or(anchor, |e| e.1);
         let mut old = vec![anchor];
-        let mut at = border[&anchor];
+        let mut at = after(anchor);
         while at != anchor {
             old.push(at);
-            at = border[&at];
+            at = after(at);
         }
         let first = self.points.len() as u32;
         let new: Vec<u32> = (first..first + old.len() as u32).collect();
@@ -60,10 +61,8 @@ impl Cage {
         let inner = |v: u32| faces.iter().filter(|&&f| self.quads[f].contains(&v)).count() > 2;
         let anchor = self.quads[faces[0]].into_iter().find(|&v| !inner(v)).unwrap_or(self.quads[faces[0]][0]);
         self.extrude(faces, anchor);
-        let mut moved: Vec<u32> = faces.iter().flat_map(|&f| self.quads[f]).collect();
-        moved.sort_unstable();
-        moved.dedup();
-        for v in moved {
+        let corners: Vec<u32> = faces.iter().flat_map(|&f| self.quads[f]).collect();
+        for (_, &v) in corners.iter().enumerate().filter(|(i, v)| !corners[..*i].contains(v)) {
             let p = &mut self.points[v as usize];
             *p = [0, 1, 2].map(|k| middle[k] + scale * (p[k] - middle[k]) + by[k]);
         }
@@ -86,7 +85,7 @@ impl Cage {
             let (p, q) = ([0, 1, 2].map(|k| c[k] - a[k]), [0, 1, 2].map(|k| d[k] - b[k]));
             (0..3).for_each(|k| sum[k] += p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]);
         }
-        let length = libm::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+        let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
         sum.map(|x| x / length)
     }
 
@@ -94,21 +93,27 @@ impl Cage {
     pub fn refined(&self) -> Cage {
         let mean = |ps: &[[f64; 3]]| [0, 1, 2].map(|k| ps.iter().map(|p| p[k]).sum::<f64>() / ps.len() as f64);
         let faces: Vec<[f64; 3]> = self.quads.iter().map(|q| mean(&q.map(|v| self.points[v as usize]))).collect();
-        // Each edge's number and its two faces.
-        let mut edges: BTreeMap<(u32, u32), (usize, Vec<usize>)> = BTreeMap::new();
-        for (f, q) in self.quads.iter().enumerate() {
-            for i in 0..4 {
-                let (a, b) = (q[i], q[(i + 1) % 4]);
-                let next = edges.len();
-                edges.entry((a.min(b), a.max(b))).or_insert((next, Vec::new())).1.push(f);
-            }
+        // The sides of all faces by their ends: an edge is a run of two. Edges are numbered as their first sides come.
+        let ends = self.quads.iter().flat_map(|q| (0..4).map(|i| (q[i], q[(i + 1) % 4])));
+        let mut sides: Vec<(u64, u32)> =
+            ends.enumerate().map(|(h, (a, b))| (order::key(a.min(b), a.max(b)), h as u32)).collect();
+        order::sort(&mut sides);
+        let edges: Vec<&[(u64, u32)]> = sides.chunk_by(|a, b| a.0 == b.0).collect();
+        let mut first = vec![0; sides.len()];
+        edges.iter().for_each(|run| run.iter().for_each(|side| first[side.1 as usize] = run[0].1 as usize));
+        let mut number = vec![0; sides.len()];
+        let mut count = 0;
+        for h in 0..first.len() {
+            number[h] = if first[h] == h { count } else { number[first[h]] };
+            count += usize::from(first[h] == h);
         }
         let (n, m) = (self.points.len(), faces.len());
-        let mut points = vec![[0.0; 3]; n + m + edges.len()];
+        let mut points = vec![[0.0; 3]; n + m + count];
         points[n..n + m].copy_from_slice(&faces);
         // A vertex of k edges goes to (k - 2) / k of itself, 1 / k of its neighbours' mean and 1 / k of its faces' mean.
         let mut valence = vec![0.0; n];
-        edges.keys().for_each(|&(a, b)| [a, b].iter().for_each(|&v| valence[v as usize] += 1.0));
+        let ends = || edges.iter().map(|run| order::parts(run[0].0));
+        ends().flatten().for_each(|v| valence[v as usize] += 1.0);
         for (v, k) in valence.iter().enumerate() {
             points[v] = self.points[v].map(|x| x * (k - 2.0) / k);
         }
@@ -116,23 +121,23 @@ impl Cage {
             let k: f64 = valence[v as usize];
             (0..3).for_each(|i| points[v as usize][i] += p[i] / (k * k));
         };
-        for &(a, b) in edges.keys() {
+        for [a, b] in ends() {
             give(a, self.points[b as usize]);
             give(b, self.points[a as usize]);
         }
         for (f, q) in self.quads.iter().enumerate() {
             q.iter().for_each(|&v| give(v, faces[f]));
         }
-        for (&(a, b), (e, sides)) in &edges {
+        for (run, [a, b]) in edges.iter().zip(ends()) {
             let mut around = vec![self.points[a as usize], self.points[b as usize]];
-            around.extend(sides.iter().map(|&f| faces[f]));
-            points[n + m + e] = mean(&around);
+            around.extend(run.iter().map(|side| faces[side.1 as usize / 4]));
+            points[n + m + number[run[0].1 as usize]] = mean(&around);
         }
-        let edge = |a: u32, b: u32| (n + m + edges[&(a.min(b), a.max(b))].0) as u32;
+        let edge = |f: usize, c: usize| (n + m + number[4 * f + c]) as u32;
         let mut quads = Vec::with_capacity(4 * m);
         for (f, q) in self.quads.iter().enumerate() {
             for c in 0..4 {
-                quads.push([q[c], edge(q[c], q[(c + 1) % 4]), (n + f) as u32, edge(q[(c + 3) % 4], q[c])]);
+                quads.push([q[c], edge(f, c), (n + f) as u32, edge(f, (c + 3) % 4)]);
             }
         }
         Cage { points, quads }

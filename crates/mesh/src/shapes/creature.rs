@@ -134,7 +134,7 @@ fn tube() -> Cage {
         let before = TUBE[i.saturating_sub(1)];
         let after = TUBE[(i + 1).min(TUBE.len() - 1)];
         let (dy, dz) = (after[0] - before[0], after[1] - before[1]);
-        let length = libm::sqrt(dy * dy + dz * dz);
+        let length = (dy * dy + dz * dz).sqrt();
         for side in 0..SIDES {
             let (sin, cos) = libm::sincos(TAU * (side as f64 + 0.5) / SIDES as f64);
             let lift = if cos > 0.0 { up * cos } else { down * cos };
@@ -197,7 +197,7 @@ fn pull_eye(cage: &mut Cage, faces: &[usize; 4]) {
 }
 
 fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = libm::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     v.map(|x| x / length)
 }
 

@@ -64,8 +64,8 @@ const ICOSAHEDRON: [[u32; 3]; 20] = [
 
 /// The corners of three golden rectangles, scaled to length 1.
 fn icosahedron_points() -> Vec<[f64; 3]> {
-    let golden = (1.0 + libm::sqrt(5.0)) / 2.0;
-    let scale = 1.0 / libm::sqrt(1.0 + golden * golden);
+    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let scale = 1.0 / (1.0 + golden * golden).sqrt();
     let mut points = Vec::with_capacity(12);
     // The rectangles lie in the planes z = 0, x = 0 and y = 0.
     for axis in 0..3 {
@@ -92,7 +92,7 @@ pub fn dodecahedron() -> Soup {
         .iter()
         .map(|face| {
             let sum: [f64; 3] = std::array::from_fn(|k| face.iter().map(|&v| points[v as usize][k]).sum());
-            let length = libm::sqrt(sum.iter().map(|x| x * x).sum());
+            let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt();
             sum.map(|x| (x / length) as f32)
         })
         .collect();
