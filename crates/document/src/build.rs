@@ -172,8 +172,8 @@ fn pair(soup: &Soup) -> (Soup, Remark) {
         (0, 0) => "there are no triangles to pair".to_owned(),
         (0, left) => format!("none of the {left} triangles could be paired to quads"),
         (quads, left) => format!(
-            "{quads} pairs of triangles became quads, {left} triangles are left; the pairing is {:.0} % certain",
-            confidence * 100.0
+            "{quads} pairs of triangles became quads, {left} triangles are left; the pairing is {} % certain",
+            (confidence * 100.0).round() as u32
         ),
     };
     // What is sure and complete needs nobody's attention.

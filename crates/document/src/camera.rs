@@ -19,6 +19,8 @@
 use glam::camera::rh::{proj::directx, view::look_to_mat4};
 use glam::{Mat4, Vec2, Vec3};
 
+use crate::numbers::{decade, decimal, number, single};
+
 pub use crate::bounds::Bounds;
 pub use crate::pinch::{Pinch, wheel_factor};
 
@@ -183,8 +185,8 @@ impl Default for Camera {
 impl Camera {
     /// The viewer's axes.
     pub fn basis(&self) -> Basis {
-        let (sy, cy) = self.yaw.to_radians().sin_cos();
-        let (sp, cp) = self.pitch.to_radians().sin_cos();
+        let (sy, cy) = sin_cos(self.yaw);
+        let (sp, cp) = sin_cos(self.pitch);
         let right = Vec3::new(cy, 0.0, -sy);
         let back = Vec3::new(sy * cp, sp, cy * cp);
         let up = Vec3::new(-sy * sp, cp, -cy * sp);
@@ -209,9 +211,15 @@ impl Camera {
         look_to_mat4(self.eye(), -back, up)
     }
 
+    /// Half of the target plane's shorter visible side.
+    fn half_side(&self) -> f32 {
+        let (sin, cos) = sin_cos(self.fov * 0.5);
+        self.distance * (sin / cos)
+    }
+
     /// Half the width and half the height of the target plane's visible part. `aspect` is the viewport's width / height.
     pub fn half_extent(&self, aspect: f32) -> Vec2 {
-        let half = self.distance * (self.fov.to_radians() * 0.5).tan();
+        let half = self.half_side();
         if aspect >= 1.0 { Vec2::new(half * aspect, half) } else { Vec2::new(half, half / aspect) }
     }
 
@@ -243,7 +251,10 @@ impl Camera {
     pub fn projection_matrix(&self, aspect: f32, near: f32, far: f32) -> Mat4 {
         let half = self.half_extent(aspect);
         match self.projection {
-            Projection::Perspective => directx::perspective(2.0 * (half.y / self.distance).atan(), aspect, near, far),
+            Projection::Perspective => {
+                let half = half * (near / self.distance);
+                directx::frustum(-half.x, half.x, -half.y, half.y, near, far)
+            }
             Projection::Orthographic => directx::orthographic(-half.x, half.x, -half.y, half.y, near, far),
         }
     }
@@ -297,8 +308,7 @@ impl Camera {
     /// Moves the target within its plane, so that the point under the pointer stays there. `delta` as for [`Self::orbit`].
     pub fn pan(&mut self, delta: Vec2) {
         let Basis { right, up, .. } = self.basis();
-        let side = 2.0 * self.distance * (self.fov.to_radians() * 0.5).tan();
-        self.target += (up * delta.y - right * delta.x) * side;
+        self.target += (up * delta.y - right * delta.x) * (2.0 * self.half_side());
         self.standard = None;
     }
 
@@ -388,7 +398,7 @@ impl Camera {
         let delta = pinch.pan * to_side;
         self.pan(Vec2::new(delta.x, -delta.y));
         self.dolly(pinch.scale.recip(), pinch.center, aspect, bounds);
-        self.yaw = wrap_degrees(self.yaw - pinch.twist * self.pitch.to_radians().sin());
+        self.yaw = wrap_degrees(self.yaw - pinch.twist * sin_cos(self.pitch).0);
     }
 
     /// The camera on the way from `self` (t = 0) to `to` (t = 1): the shorter way round, the distance geometrically so that
@@ -416,7 +426,7 @@ impl Camera {
             return *self;
         }
         let pose = PoseText::of(self);
-        let number = |text: &str, or: f32| text.parse().unwrap_or(or);
+        let number = |text: &str, or: f32| single(text).unwrap_or(or);
         Camera {
             yaw: number(&pose.yaw, self.yaw),
             pitch: number(&pose.pitch, self.pitch),
@@ -426,7 +436,7 @@ impl Camera {
                 number(&pose.target[1], self.target.y),
                 number(&pose.target[2], self.target.z),
             ),
-            fov: number(&decimal(self.fov, 1), self.fov),
+            fov: number(&decimal(self.fov.into(), 1), self.fov),
             ..*self
         }
     }
@@ -442,33 +452,24 @@ struct PoseText {
 
 impl PoseText {
     fn of(camera: &Camera) -> PoseText {
-        let distance = decimal(camera.distance, 3 - decade(camera.distance));
+        let distance = decimal(camera.distance.into(), 3 - decade(camera.distance.into()));
         // The target's step follows the distance as written, so that writing twice gives the same text.
-        let step = 3 - decade(distance.parse().unwrap_or(camera.distance));
-        let yaw = decimal(camera.yaw, 1);
+        let step = 3 - decade(number(&distance).unwrap_or(camera.distance.into()));
+        let yaw = decimal(camera.yaw.into(), 1);
         PoseText {
             // -180 and 180 are one direction.
             yaw: if yaw == "-180" { "180".into() } else { yaw },
-            pitch: decimal(camera.pitch, 1),
+            pitch: decimal(camera.pitch.into(), 1),
             distance,
-            target: camera.target.to_array().map(|v| decimal(v, step)),
+            target: camera.target.to_array().map(|v| decimal(v.into(), step)),
         }
     }
 }
 
-/// The power of ten at or below `value`.
-fn decade(value: f32) -> i32 {
-    // The tiny factor lifts values such as 0.01_f32, which lies just below its power of ten.
-    (f64::from(value) * (1.0 + 1e-6)).log10().floor().clamp(-30.0, 30.0) as i32
-}
-
-/// `value` rounded to `places` decimal places (negative: to tens, hundreds ...), in the fewest characters.
-fn decimal(value: f32, places: i32) -> String {
-    let scale = 10_f64.powi(places.abs());
-    let value = f64::from(value);
-    let rounded = if places >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale };
-    // Adding zero turns -0 into 0.
-    format!("{}", rounded + 0.0)
+/// Sine and cosine of an angle in degrees, the same bits on every platform.
+fn sin_cos(degrees: f32) -> (f32, f32) {
+    let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
+    (sin as f32, cos as f32)
 }
 
 /// An angle in degrees brought into (-180, 180].

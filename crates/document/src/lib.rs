@@ -28,6 +28,7 @@ pub mod history;
 pub mod info;
 pub mod link;
 mod merge;
+pub mod numbers;
 mod outcome;
 mod pinch;
 pub mod source;

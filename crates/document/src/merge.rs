@@ -12,21 +12,21 @@
 //! Vertices of level 0 keep their numbers at every level, which is what makes the walk find u and v. Cost: sorting the
 //! level's edges; nothing where no vertex was split.
 
-use std::collections::BTreeMap;
-
-use limn_mesh::Refined;
+use limn_mesh::{Refined, order};
 
 /// For every vertex of the level the vertex that it is a copy of (the lowest, itself if it is none); `None` if no vertex
 /// has copies.
 pub(crate) fn copies(refined: &Refined) -> Option<Vec<u32>> {
     let mesh = refined.mesh();
-    let mut lowest: BTreeMap<u32, u32> = BTreeMap::new();
+    let highest = mesh.vertex_source.iter().copied().max()?;
+    let mut lowest = vec![u32::MAX; highest as usize + 1];
     let mut same: Vec<u32> = (0..refined.points.len() as u32).collect();
     let mut any = false;
     for (v, &source) in mesh.vertex_source.iter().enumerate() {
-        let first = *lowest.entry(source).or_insert(v as u32);
-        any |= first != v as u32;
-        join(refined, &mut same, v as u32, first);
+        let Some(first) = lowest.get_mut(source as usize) else { continue };
+        *first = (*first).min(v as u32);
+        any |= *first != v as u32;
+        join(refined, &mut same, v as u32, *first);
     }
     if !any {
         return None;
@@ -35,7 +35,8 @@ pub(crate) fn copies(refined: &Refined) -> Option<Vec<u32>> {
     let steps = 1usize.checked_shl(refined.level)?;
     let source = |v: u32| mesh.vertex_source.get(v as usize).copied();
     // Chains that have been walked, by the positions of the file at their ends, lower first.
-    let mut chains: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+    let mut ends: Vec<(u64, u32)> = Vec::new();
+    let mut chains: Vec<Vec<u32>> = Vec::new();
     for start in 0..mesh.vertex_source.len() as u32 {
         let mut chain = vec![start];
         let mut at = start;
@@ -51,9 +52,15 @@ pub(crate) fn copies(refined: &Refined) -> Option<Vec<u32>> {
         if a > b {
             chain.reverse();
         }
-        match chains.get(&(a.min(b), a.max(b))) {
-            Some(first) => first.iter().zip(&chain).for_each(|(&to, &v)| join(refined, &mut same, v, to)),
-            None => _ = chains.insert((a.min(b), a.max(b)), chain),
+        ends.push((order::key(a.min(b), a.max(b)), chains.len() as u32));
+        chains.push(chain);
+    }
+    order::sort(&mut ends);
+    let chain = |end: &(u64, u32)| chains.get(end.1 as usize).into_iter().flatten();
+    for run in ends.chunk_by(|a, b| a.0 == b.0) {
+        let Some((first, others)) = run.split_first() else { continue };
+        for other in others {
+            chain(first).zip(chain(other)).for_each(|(&to, &v)| join(refined, &mut same, v, to));
         }
     }
     Some(same)
@@ -75,17 +82,18 @@ fn boundary(refined: &Refined) -> Vec<u32> {
     let faces = &refined.faces;
     let corners = faces.corners();
     // Each edge with its lower vertex first, and which way round the face has it.
-    let mut edges: Vec<(u32, u32, bool)> = Vec::with_capacity(corners.len());
+    let mut edges: Vec<(u64, u32)> = Vec::with_capacity(corners.len());
     for f in 0..faces.count() {
         let face = corners.get(faces.range(f)).unwrap_or_default();
         let ends = face.iter().skip(1).chain(face.first());
-        edges.extend(face.iter().zip(ends).map(|(&a, &b)| (a.min(b), a.max(b), a < b)));
+        edges.extend(face.iter().zip(ends).map(|(&a, &b)| (order::key(a.min(b), a.max(b)), u32::from(a < b))));
     }
-    edges.sort_unstable();
+    order::sort(&mut edges);
     let mut next = vec![u32::MAX; refined.points.len()];
-    for pair in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        if let [(low, high, rising)] = *pair {
-            let (from, to) = if rising { (low, high) } else { (high, low) };
+    for pair in edges.chunk_by(|a, b| a.0 == b.0) {
+        if let [(ends, rising)] = *pair {
+            let [low, high] = order::parts(ends);
+            let (from, to) = if rising == 1 { (low, high) } else { (high, low) };
             if let Some(slot) = next.get_mut(from as usize) {
                 *slot = to;
             }

@@ -41,5 +41,5 @@ impl Pinch {
 /// The factor for [`Camera::dolly`](crate::Camera::dolly) from a wheel's movement in pixels (down is positive and goes away): a notch of 100 is
 /// a fifth. One event is worth three notches at most, whatever a device claims.
 pub fn wheel_factor(pixels: f32) -> f32 {
-    if pixels.is_finite() { (pixels.clamp(-300.0, 300.0) * 0.0018).exp() } else { 1.0 }
+    if pixels.is_finite() { 1.001_801_6_f32.powf(pixels.clamp(-300.0, 300.0)) } else { 1.0 }
 }

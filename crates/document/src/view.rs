@@ -10,6 +10,7 @@
 use std::fmt;
 
 use crate::camera::{Bounds, Camera, DEFAULT_FOV, FOV_RANGE, Projection, Standard, UpAxis, wrap_degrees};
+use crate::numbers::single;
 
 /// How light falls on the faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -185,11 +186,6 @@ fn on_off(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }
 
-/// A finite number.
-fn number(text: &str) -> Option<f32> {
-    text.parse().ok().filter(|v: &f32| v.is_finite())
-}
-
 impl ViewSet {
     /// Reads `value` for `key`. `None` if there is no such key or it does not take this value; [`VIEW_KEYS`] says what it
     /// takes.
@@ -230,7 +226,7 @@ impl ViewSet {
                 "orthographic" => Projection::Orthographic,
                 _ => return None,
             }),
-            "fov" => ViewSet::Fov(number(value).filter(|v| (FOV_RANGE.0..=FOV_RANGE.1).contains(v))?),
+            "fov" => ViewSet::Fov(single(value).filter(|v| (FOV_RANGE.0..=FOV_RANGE.1).contains(v))?),
             "camera" => ViewSet::Camera(parse_camera(value)?),
             _ => return None,
         })
@@ -323,7 +319,7 @@ fn parse_camera(value: &str) -> Option<CameraSet> {
     if let Some(standard) = Standard::from_name(value) {
         return Some(CameraSet::Standard(standard));
     }
-    let numbers: Vec<f32> = value.split(',').map(number).collect::<Option<_>>()?;
+    let numbers: Vec<f32> = value.split(',').map(single).collect::<Option<_>>()?;
     match *numbers {
         [yaw, pitch, distance, x, y, z] if distance > 0.0 && (-90.0..=90.0).contains(&pitch) => {
             Some(CameraSet::Pose { yaw: wrap_degrees(yaw), pitch, distance, target: [x, y, z] })
@@ -338,10 +334,18 @@ fn parse_names(value: &str) -> Option<Vec<String>> {
     if value.is_empty() {
         return Some(Vec::new());
     }
-    let mut names = value.split(',').map(|name| crate::link::unescape(name, false)).collect::<Option<Vec<_>>>()?;
-    names.sort();
-    names.dedup();
+    let mut names = Vec::new();
+    for name in value.split(',') {
+        insert_name(&mut names, crate::link::unescape(name, false)?);
+    }
     Some(names)
+}
+
+/// Puts a name among sorted ones, unless it is there.
+pub fn insert_name(names: &mut Vec<String>, name: String) {
+    if let Err(at) = names.binary_search(&name) {
+        names.insert(at, name);
+    }
 }
 
 /// A group name such that commas and `%` in it neither end nor change it; [`parse_names`] reads it back.

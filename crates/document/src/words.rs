@@ -98,7 +98,7 @@ pub fn sentence(text: &str) -> String {
     let is_name = first.contains('[') || first.trim_end_matches(['.', ':', ',']).contains('.');
     let mut chars = text.chars();
     let mut out: String = match chars.next() {
-        Some(c) if !is_name => c.to_uppercase().chain(chars).collect(),
+        Some(c) if !is_name => std::iter::once(c.to_ascii_uppercase()).chain(chars).collect(),
         _ => text.to_owned(),
     };
     if !out.ends_with(['.', '!', '?']) {

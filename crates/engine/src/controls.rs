@@ -2,11 +2,9 @@
 //!
 //! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
 
-use std::collections::BTreeMap;
-
 use limn_document::{Document, ViewSet};
 use limn_mesh::{Boundary, Weld};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// A row.
 #[derive(Debug, Serialize)]
@@ -170,11 +168,21 @@ pub static CONTROLS: &[Control] = &[
     },
 ];
 
+/// What is chosen in each row, by the row's id.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values(pub Vec<(&'static str, String)>);
+
+impl Serialize for Values {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(id, value)| (id, value)))
+    }
+}
+
 /// The chosen value of each row.
-pub fn values(document: &Document) -> BTreeMap<&'static str, String> {
+pub fn values(document: &Document) -> Values {
     let view = document.view();
     let on = |on: bool| (if on { "on" } else { "off" }).to_owned();
-    let mut values: BTreeMap<&'static str, String> = [
+    let mut values: Vec<(&'static str, String)> = [
         ViewSet::Shading(view.shading),
         ViewSet::Edges(view.edges),
         ViewSet::Points(view.points),
@@ -190,22 +198,22 @@ pub fn values(document: &Document) -> BTreeMap<&'static str, String> {
     .map(|set| (set.key(), set.value()))
     .collect();
     if let Some((quads, weld)) = document.reading() {
-        values.insert("quads", on(quads));
+        values.push(("quads", on(quads)));
         let weld = match weld {
             Weld::Off => "off",
             Weld::Exact => "exact",
             Weld::Relative(_) => "near",
         };
-        values.insert("weld", weld.to_owned());
+        values.push(("weld", weld.to_owned()));
     }
     if let Some(plan) = document.plan() {
         let rule = match plan.boundary {
             Boundary::EdgeOnly => "edge-only",
             Boundary::EdgeAndCorner => "edge-and-corner",
         };
-        values.insert("boundary", rule.to_owned());
+        values.push(("boundary", rule.to_owned()));
     }
-    values
+    Values(values)
 }
 
 /// The rows that make no difference to this model. `open` says whether it has a rim.
@@ -233,6 +241,10 @@ pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
 mod tests {
     use super::*;
 
+    fn value<'a>(values: &'a Values, id: &str) -> &'a str {
+        &values.0.iter().find(|v| v.0 == id).unwrap().1
+    }
+
     #[test]
     fn every_choice_is_a_command_that_chooses_it() {
         let mut document = Document::new(1 << 30);
@@ -241,7 +253,7 @@ mod tests {
             for choice in control.choices {
                 document.run(choice.command).unwrap_or_else(|e| panic!("{}: {e}", choice.command));
                 if control.kind != "actions" {
-                    assert_eq!(values(&document)[control.id], choice.value, "{}", choice.command);
+                    assert_eq!(value(&values(&document), control.id), choice.value, "{}", choice.command);
                 }
             }
         }
@@ -261,7 +273,7 @@ mod tests {
         let document = Document::new(1 << 30);
         let values = values(&document);
         for control in CONTROLS.iter().filter(|c| c.tab == "view" && c.kind != "actions") {
-            let value = &values[control.id];
+            let value = value(&values, control.id);
             assert!(control.choices.iter().any(|c| c.value == value), "{} {value}", control.id);
         }
     }

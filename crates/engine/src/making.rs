@@ -8,11 +8,10 @@
 //! shading of small models takes the corner layout, which has one normal a polygon: that changes buffers only, so
 //! [`Making::again`] starts from the points that are there.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use limn_document::Document;
-use limn_mesh::{Job, Mesh, NONE, Plan, RefineError, Refined, triangulate};
+use limn_mesh::{Job, Mesh, NONE, Plan, RefineError, Refined, order, triangulate};
 use limn_render::{Error, Part, Renderer, Surface, SurfaceData, Upload};
 
 /// Rows of refinement, or elements of an upload, between two looks at the clock: about half a millisecond.
@@ -36,16 +35,20 @@ impl Parts {
         if soup.face_groups.is_empty() && soup.face_materials.is_empty() {
             return Parts::default();
         }
-        let mut numbers: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        // Known pairs of material and group, sorted, and their numbers.
+        let mut known: (Vec<u64>, Vec<u32>) = Default::default();
         let mut parts = Parts::default();
         for f in 0..soup.face_count() {
             let material = soup.face_materials.get(f).copied().unwrap_or(NONE);
             let group = soup.face_groups.get(f).copied().unwrap_or(0);
-            let number = *numbers.entry((material, group)).or_insert_with(|| {
+            let key = order::key(material, group);
+            let at = known.0.binary_search(&key).unwrap_or_else(|at| {
+                known.0.insert(at, key);
+                known.1.insert(at, parts.list.len() as u32);
                 parts.list.push(Part { material, group });
-                parts.list.len() as u32 - 1
+                at
             });
-            parts.of_face.push(number);
+            parts.of_face.extend(known.1.get(at));
         }
         parts
     }

@@ -218,7 +218,7 @@ pub struct State {
     /// Whether work goes on.
     pub busy: bool,
     /// The chosen value of each control.
-    pub values: std::collections::BTreeMap<&'static str, String>,
+    pub values: crate::controls::Values,
     /// Controls that do not apply.
     pub disabled: Vec<&'static str>,
     /// Groups of the model.

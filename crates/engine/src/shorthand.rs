@@ -8,6 +8,7 @@
 use glam::Vec2;
 use limn_document::Document;
 use limn_document::camera::{Projection, UpAxis};
+use limn_document::numbers::single;
 use limn_document::view::{Edges, Shading};
 
 /// The first words that are shorthand.
@@ -28,7 +29,6 @@ pub enum Short {
 pub fn expand(text: &str, document: &Document) -> Option<Short> {
     let mut words = text.split_whitespace();
     let (first, second, third) = (words.next()?, words.next()?, words.next());
-    let number = |word: &str| word.parse::<f32>().ok().filter(|v| v.is_finite());
     match first {
         "toggle" => {
             let view = document.view();
@@ -60,8 +60,8 @@ pub fn expand(text: &str, document: &Document) -> Option<Short> {
             let level = i64::from(document.plan()?.level) + second.parse::<i64>().ok()?;
             Some(Short::Command(format!("level {}", level.clamp(0, i64::from(document.highest_level())))))
         }
-        "turn" => Some(Short::Turn(Vec2::new(number(second)?, number(third?)?))),
-        "zoom" => Some(Short::Zoom(number(second).filter(|f| *f > 0.0)?)),
+        "turn" => Some(Short::Turn(Vec2::new(single(second)?, single(third?)?))),
+        "zoom" => Some(Short::Zoom(single(second).filter(|f| *f > 0.0)?)),
         _ => None,
     }
 }

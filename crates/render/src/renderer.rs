@@ -443,8 +443,8 @@ impl Renderer {
         self.stretches.clear();
         let Some(surface) = &self.surface else { return };
         let runs = visible(surface, hidden);
-        for (material, first, end) in runs {
-            for (i, chunk) in surface.chunks.iter().enumerate() {
+        for (i, chunk) in surface.chunks.iter().enumerate() {
+            for &(material, first, end) in &runs {
                 let (a, b) = (first.max(chunk.first), end.min(chunk.first + chunk.count));
                 if a < b {
                     self.stretches.push(Stretch {
@@ -456,7 +456,6 @@ impl Renderer {
                 }
             }
         }
-        self.stretches.sort_by_key(|s| (s.chunk, s.material));
     }
 
     /// Box around the surface that is shown.

@@ -9,6 +9,7 @@ use std::fmt;
 use limn_mesh::{Boundary, SCHEMES, SHAPES, Weld};
 
 use super::Command;
+use crate::numbers::single;
 use crate::source::Source;
 use crate::view::{VIEW_KEYS, ViewSet};
 
@@ -82,12 +83,12 @@ impl Kind {
             Kind::Source => Source::parse(word).map(Value::Source),
             Kind::Scheme => is_id(word).then(|| Value::Text(word.to_owned())),
             Kind::Whole => word.parse().ok().map(Value::Whole),
-            Kind::Positive => word.parse().ok().filter(|v: &f32| v.is_finite() && *v > 0.0).map(Value::Number),
+            Kind::Positive => single(word).filter(|v| *v > 0.0).map(Value::Number),
             Kind::Word(words) => words.iter().find(|w| **w == word).map(|w| Value::Word(w)),
             Kind::Weld => match word {
                 "exact" => Some(Value::Weld(Weld::Exact)),
                 "off" => Some(Value::Weld(Weld::Off)),
-                _ => word.parse().ok().filter(|v| *v > 0.0 && *v <= 0.1).map(|v| Value::Weld(Weld::Relative(v))),
+                _ => single(word).filter(|v| *v > 0.0 && *v <= 0.1).map(|v| Value::Weld(Weld::Relative(v))),
             },
             Kind::File => (!word.is_empty()).then(|| Value::Text(word.to_owned())),
             Kind::Command => spec(word).map(|s| Value::Word(s.name)),

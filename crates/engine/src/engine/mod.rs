@@ -383,9 +383,10 @@ impl Engine {
     }
 
     fn refuse(&self, command: &str, error: &CommandError) {
-        let text = error.to_string();
-        let mut chars = text.chars();
-        let text = chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or(text);
+        let mut text = error.to_string();
+        if let Some(first) = text.get_mut(..1) {
+            first.make_ascii_uppercase();
+        }
         self.log(command, text, false);
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec2, Vec3};
 use limn_document::Source;
 use limn_document::camera::{Bounds, UpAxis};
-use limn_document::view::{Background, Edges, Shading};
+use limn_document::view::{Background, Edges, Shading, insert_name};
 use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
 
@@ -223,8 +223,7 @@ impl Engine {
                 let hidden = view.hides(name);
                 let mut names: Vec<String> = view.hidden.iter().filter(|n| *n != name).cloned().collect();
                 if !hidden {
-                    names.push(name.clone());
-                    names.sort();
+                    insert_name(&mut names, name.clone());
                 }
                 let set = limn_document::ViewSet::Hide(names);
                 let command = format!("view {}", limn_document::words::quote(&set.to_string()));
