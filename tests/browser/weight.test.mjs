@@ -1,13 +1,11 @@
 // The page's weight: every body that the server sent for a first visit, what workers fetched included, as brotli at its
-// highest level. The goals are those of the smallest comparable viewers. WebGPU does not reach its goal yet: until it does, it
-// is held to a ceiling just above what it weighs, so that it can only become lighter.
+// highest level. The budgets are those of the smallest comparable viewers.
 
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { QUICK, RENDERERS, launch, picture, serveSite, visit } from "./harness.mjs";
 
-const GOAL = { webgpu: 230_000, webgl: 800_000 };
-const BUDGET = { webgpu: 270_000, webgl: 800_000 };
+const BUDGET = { webgpu: 230_000, webgl: 800_000 };
 
 describe("the page's weight", { skip: QUICK && "a quick build is not what ships" }, () => {
   for (const renderer of RENDERERS) {
@@ -19,7 +17,7 @@ describe("the page's weight", { skip: QUICK && "a quick build is not what ships"
         await picture(page);
         const total = site.sent.reduce((sum, { bytes }) => sum + bytes, 0);
         const list = site.sent.map(({ path, bytes, status }) => `  ${String(bytes).padStart(8)}  ${path}${status === 200 ? "" : ` (${status})`}`);
-        console.log(`${list.join("\n")}\n  ${String(total).padStart(8)}  ${renderer} in all, of ${BUDGET[renderer]}; the goal is ${GOAL[renderer]}`);
+        console.log(`${list.join("\n")}\n  ${String(total).padStart(8)}  ${renderer} in all, of ${BUDGET[renderer]}`);
         assert.ok(site.sent.some(({ path }) => path.endsWith(".wasm")), "the worker's fetches are counted");
         const paths = site.sent.map(({ path }) => path);
         assert.equal(new Set(paths).size, paths.length, "nothing is fetched twice");

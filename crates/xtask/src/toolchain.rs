@@ -15,9 +15,19 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 pub const WASI: &str = "wasm32-wasip1";
 
 /// Vector instructions are in every browser of the last years, and the compiler uses them only where the bits stay.
+/// Messages of panics name source files: without the builder's own folders, so that what ships is the same wherever it
+/// is built.
 pub fn wasm_flags() -> String {
-    let own = "-Ctarget-feature=+simd128";
-    std::env::var("RUSTFLAGS").map_or_else(|_| own.to_owned(), |theirs| format!("{theirs} {own}"))
+    let mut flags = std::env::var("RUSTFLAGS").unwrap_or_default();
+    flags.push_str(" -Ctarget-feature=+simd128");
+    let home = std::env::var_os("CARGO_HOME")
+        .map(PathBuf::from)
+        .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
+    // cargo has no way to quote a flag's spaces in this variable.
+    if let Some(home) = home.as_deref().and_then(Path::to_str).filter(|home| !home.contains(' ')) {
+        flags.push_str(&format!(" --remap-path-prefix={home}/registry/src="));
+    }
+    flags.trim_start().to_owned()
 }
 
 /// Sees to it that rustc can build for `target`.
