@@ -50,7 +50,7 @@ impl Table {
         let build = || Arc::new(Mesh::build(soup, Weld::Off).map(|(m, _)| m).unwrap_or_else(|e| panic!("{e}")));
         let mesh = build();
         let Some(entry) = scheme(id) else { panic!("{id} is not in the registry") };
-        let plan = Plan { scheme: entry, boundary: Boundary::default(), level };
+        let plan = Plan::new(entry, Boundary::default(), level);
         let run = |mesh: &Arc<Mesh>| refine(mesh, plan, u64::MAX).unwrap_or_else(|e| panic!("{e}"));
         let refined = run(&mesh);
         let faces = refined.faces.count() as f64;
@@ -101,6 +101,9 @@ fn main() {
     }
     for level in 1..=5 {
         table.row("creature", "linear", &quads, level);
+    }
+    for id in ["j-spline", "butterfly", "modified-butterfly"] {
+        table.row("creature, triangles", id, &triangles, 4);
     }
     table.row("pawn", "loop", &built("pawn"), 6);
     table.row("torus", "catmull-clark", &built("torus"), 5);

@@ -16,7 +16,7 @@
 //!
 //! let cube = (shapes::shape("cube").unwrap().build)();
 //! let (mesh, _report) = Mesh::build(&cube, Weld::Off)?;
-//! let plan = Plan { scheme: scheme("catmull-clark").unwrap(), boundary: Boundary::default(), level: 3 };
+//! let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 3);
 //! let refined = refine(&Arc::new(mesh), plan, 1 << 30)?;
 //! assert_eq!(refined.counts.faces, 6 * 4 * 4 * 4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -46,7 +46,7 @@ pub use mesh::{Mesh, Stats, TopologyError};
 pub use refine::{Job, Plan, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
-pub use scheme::{Accepts, Boundary, Entry, Info, SCHEMES, scheme};
+pub use scheme::{Accepts, Boundary, Domain, Entry, Info, Param, Params, SCHEMES, scheme};
 pub use shapes::{SHAPES, Shape, shape};
 pub use soup::{NONE, Soup};
 pub use split::Split;

@@ -13,7 +13,7 @@
 
 use crate::mesh::Mesh;
 use crate::refined::{Faces, Refined, UvValues};
-use crate::scheme::{Boundary, Entry, Tags};
+use crate::scheme::{Boundary, Entry, Params, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Counts};
@@ -25,6 +25,8 @@ use std::sync::Arc;
 pub struct Plan {
     /// The scheme.
     pub scheme: &'static Entry,
+    /// Its parameters.
+    pub params: Params,
     /// The boundary rule.
     pub boundary: Boundary,
     /// How many times; 0 is the mesh itself.
@@ -108,6 +110,16 @@ pub fn grouped(n: u64) -> String {
 const LARGEST: u64 = 1 << 31;
 
 impl Plan {
+    /// A plan with the scheme's own parameters.
+    pub fn new(scheme: &'static Entry, boundary: Boundary, level: u32) -> Plan {
+        Plan { scheme, params: Params::default(), boundary, level }
+    }
+
+    /// What rules have to know of the plan, and of the sharp vertices.
+    pub(crate) fn tags<'a>(&self, sharp: &'a [bool]) -> Tags<'a> {
+        Tags { boundary: self.boundary, sharp, params: self.params.of(&self.scheme.info) }
+    }
+
     /// The split that the plan uses on `mesh`.
     ///
     /// # Errors
@@ -303,7 +315,7 @@ pub fn evaluate<const N: usize>(
     mut inspect: impl FnMut(&Level<'_>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
     let split = admit(mesh, &plan, u64::MAX)?;
-    let tags = Tags { boundary: plan.boundary, sharp: &mesh.sharp };
+    let tags = plan.tags(&mesh.sharp);
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
     for step in 0..plan.level {

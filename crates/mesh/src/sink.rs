@@ -16,6 +16,8 @@
 pub trait Row {
     /// Adds `weight` times vertex `v` of the level being refined.
     fn vertex(&mut self, v: u32, weight: f64);
+    /// Adds `weight` times the sum of two vertices: the same bits whichever comes first.
+    fn pair(&mut self, a: u32, b: u32, weight: f64);
     /// Adds `weight` times child `c`, which an *earlier pass* gave.
     fn child(&mut self, c: u32, weight: f64);
     /// Multiplies everything added so far.
@@ -100,6 +102,13 @@ impl Row for Sum<'_> {
         self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
     }
     #[inline(always)]
+    fn pair(&mut self, a: u32, b: u32, weight: f64) {
+        let (p, q, w) = (self.old[a as usize], self.old[b as usize], weight as f32);
+        for k in 0..3 {
+            self.sum[k] += w * (p[k] + q[k]);
+        }
+    }
+    #[inline(always)]
     fn child(&mut self, c: u32, weight: f64) {
         let (p, w) = (self.new[c as usize], weight as f32);
         self.sum = [self.sum[0] + w * p[0], self.sum[1] + w * p[1], self.sum[2] + w * p[2]];
@@ -161,6 +170,9 @@ pub struct Entries(Vec<(Source, f64)>);
 impl Row for Entries {
     fn vertex(&mut self, v: u32, weight: f64) {
         self.0.push((Source::Vertex(v), weight));
+    }
+    fn pair(&mut self, a: u32, b: u32, weight: f64) {
+        self.0.extend([(Source::Vertex(a), weight), (Source::Vertex(b), weight)]);
     }
     fn child(&mut self, c: u32, weight: f64) {
         self.0.push((Source::Child(c), weight));

@@ -133,9 +133,9 @@ impl Track {
         while *quota > 0 && self.stage != Stage::Done {
             let level = self.half_edges.as_ref().map_or(Level::Base(base), Owned::view);
             let tags = if self.uv {
-                Tags { boundary: Boundary::EdgeAndCorner, sharp: &[] }
+                Tags { boundary: Boundary::EdgeAndCorner, ..plan.tags(&[]) }
             } else {
-                Tags { boundary: plan.boundary, sharp: &mesh.sharp }
+                plan.tags(&mesh.sharp)
             };
             let children = split.children(&level) as usize;
             match &mut self.stage {

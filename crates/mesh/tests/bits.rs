@@ -19,7 +19,7 @@ fn hashes_of_refined_models() {
         let (triangles, _) = triangulate_soup(&soup);
         for entry in SCHEMES {
             for boundary in [Boundary::EdgeOnly, Boundary::EdgeAndCorner] {
-                let plan = Plan { scheme: entry, boundary, level: 3 };
+                let plan = Plan::new(entry, boundary, 3);
                 // Schemes on triangles get the triangulated model, as they do on the page.
                 let refined = [&soup, &triangles].into_iter().find_map(|soup| {
                     let (mesh, _) = Mesh::build(soup, Weld::Off).ok()?;

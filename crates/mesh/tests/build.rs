@@ -168,7 +168,7 @@ proptest! {
                 mesh.stats();
                 let mesh = std::sync::Arc::new(mesh);
                 for scheme in SCHEMES.iter().filter(|s| s.info.split(mesh.is_triangles()).is_some()) {
-                    let plan = limn_mesh::Plan { scheme, boundary: limn_mesh::Boundary::EdgeAndCorner, level: 2 };
+                    let plan = limn_mesh::Plan::new(scheme, limn_mesh::Boundary::EdgeAndCorner, 2);
                     let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
                     let same = |a: usize, b: usize| refined.points[a].map(f32::to_bits) == refined.points[b].map(f32::to_bits);
                     for v in 0..mesh.positions.len() {

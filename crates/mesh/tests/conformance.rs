@@ -18,7 +18,7 @@ fn plans(mesh: &Mesh, level: u32) -> Vec<Plan> {
     SCHEMES
         .iter()
         .filter(takes)
-        .flat_map(|scheme| boundaries.map(|boundary| Plan { scheme, boundary, level }))
+        .flat_map(|scheme| boundaries.map(|boundary| Plan::new(scheme, boundary, level)))
         .collect()
 }
 
@@ -291,7 +291,7 @@ fn colours_follow_the_scheme_and_seams_stay_seams() {
 #[test]
 fn refused_with_the_numbers() {
     let cube = build(&(limn_mesh::shape("cube").unwrap().build)());
-    let plan = |id, level| Plan { scheme: limn_mesh::scheme(id).unwrap(), boundary: Boundary::default(), level };
+    let plan = |id, level| Plan::new(limn_mesh::scheme(id).unwrap(), Boundary::default(), level);
     let error = refine(&cube, plan("catmull-clark", 100), 1 << 30).unwrap_err();
     assert_eq!(error.to_string(), "level 100 would make more than 2^64 faces; choose level 11 or lower");
     let error = refine(&cube, plan("catmull-clark", 12), 1 << 30).unwrap_err();
@@ -313,7 +313,8 @@ fn rows_resume_where_they_stopped() {
     let mesh = build(&(limn_mesh::shape("icosahedron").unwrap().build)());
     for plan in plans(&mesh, 1) {
         let split = plan.split(&mesh).unwrap();
-        let tags = limn_mesh::scheme::Tags { boundary: plan.boundary, sharp: &[] };
+        let tags =
+            limn_mesh::scheme::Tags { boundary: plan.boundary, sharp: &[], params: plan.params.of(&plan.scheme.info) };
         let level = Level::Base(&mesh.topology);
         let (mut cursor, mut children) = (Cursor::default(), Vec::new());
         loop {

@@ -127,8 +127,8 @@ impl Polygons {
         out
     }
 
-    /// Loop 1987.
-    fn loop_(&self, boundary: Boundary) -> Polygons {
+    /// Loop 1987; Warren 1995 with 3 / (8 n) from valence 4 on.
+    fn loop_(&self, boundary: Boundary, warren: bool) -> Polygons {
         let a = self.around();
         let mut out = self.split(&a, true);
         for (i, (&(v, w), faces)) in a.edges.iter().enumerate() {
@@ -146,10 +146,158 @@ impl Polygons {
             out.points[v] = self.rim_rule(&a, v, boundary).unwrap_or_else(|| {
                 let n = a.neighbours[v].len() as f64;
                 let c = 3.0 / 8.0 + (std::f64::consts::TAU / n).cos() / 4.0;
-                let alpha = 3.0 / 8.0 + c * c; // the vertex's own weight
+                // The vertex's own weight.
+                let alpha = if warren && n > 3.0 { 1.0 - n * (3.0 / (8.0 * n)) } else { 3.0 / 8.0 + c * c };
                 let ring = mean(a.neighbours[v].iter().map(|&w| &self.points[w]));
                 mix(&[(alpha, self.points[v]), (1.0 - alpha, ring)])
             });
+        }
+        out
+    }
+
+    /// The neighbours of `v` in order, and whether they go all the way round.
+    fn ring(&self, a: &Around, v: usize) -> (Vec<usize>, bool) {
+        let mut after = BTreeMap::new();
+        for &f in &a.faces[v] {
+            let face = &self.faces[f];
+            let i = face.iter().position(|&w| w == v).unwrap();
+            after.insert(face[(i + 1) % face.len()], face[(i + face.len() - 1) % face.len()]);
+        }
+        let first = after.keys().find(|&k| !after.values().any(|w| w == k));
+        let closed = first.is_none();
+        let mut ring = vec![*first.unwrap_or(after.keys().next().unwrap())];
+        while let Some(&w) = after.get(ring.last().unwrap()).filter(|w| **w != ring[0]) {
+            ring.push(w);
+        }
+        (ring, closed)
+    }
+
+    /// The other neighbour along the rim: from `w` through `v`; the straight continuation where the rim ends at a corner.
+    fn further(&self, a: &Around, v: usize, w: usize, boundary: Boundary) -> Point {
+        if boundary == Boundary::EdgeAndCorner && a.faces[v].len() == 1 {
+            return mix(&[(2.0, self.points[v]), (-1.0, self.points[w])]);
+        }
+        self.points[*a.rim[v].iter().find(|&&x| x != w).unwrap()]
+    }
+
+    /// Triangles split, with new points given by `rule` of each edge's ends and faces.
+    fn interpolated(&self, rule: impl Fn(&Around, usize, usize, &[usize]) -> Point) -> Polygons {
+        let a = self.around();
+        let mut out = self.split(&a, true);
+        for (i, (&(v, w), faces)) in a.edges.iter().enumerate() {
+            out.points[self.points.len() + i] = rule(&a, v, w, faces);
+        }
+        out
+    }
+
+    fn four_points(&self, a: &Around, v: usize, w: usize, tension: f64, boundary: Boundary) -> Point {
+        let outer = [self.further(a, v, w, boundary), self.further(a, w, v, boundary)];
+        let near = 0.5 + tension;
+        mix(&[(near, self.points[v]), (near, self.points[w]), (-tension, outer[0]), (-tension, outer[1])])
+    }
+
+    /// The third corner of the triangle beyond edge (v, w), seen from the triangle whose third corner is `inner`.
+    fn beyond(&self, a: &Around, v: usize, w: usize, inner: usize) -> Point {
+        let third = |f: &usize| *self.faces[*f].iter().find(|&&x| x != v && x != w).unwrap();
+        let sides = &a.edges[&(v.min(w), v.max(w))];
+        match sides.iter().map(third).position(|x| x == inner) {
+            Some(i) if sides.len() == 2 => self.points[third(&sides[1 - i])],
+            _ => mix(&[(1.0, self.points[v]), (1.0, self.points[w]), (-1.0, self.points[inner])]),
+        }
+    }
+
+    fn eight_points(&self, a: &Around, v: usize, w: usize, faces: &[usize], tension: f64) -> Point {
+        let mut terms = vec![(0.5, self.points[v]), (0.5, self.points[w])];
+        for f in faces {
+            let c = *self.faces[*f].iter().find(|&&x| x != v && x != w).unwrap();
+            terms.push((2.0 * tension, self.points[c]));
+            terms.push((-tension, self.beyond(a, v, c, w)));
+            terms.push((-tension, self.beyond(a, w, c, v)));
+        }
+        mix(&terms)
+    }
+
+    /// Dyn, Levin and Gregory 1990.
+    fn butterfly(&self, tension: f64, boundary: Boundary) -> Polygons {
+        self.interpolated(|a, v, w, faces| match faces.len() {
+            1 => self.four_points(a, v, w, tension, boundary),
+            _ => self.eight_points(a, v, w, faces, tension),
+        })
+    }
+
+    /// Zorin, Schroeder and Sweldens 1996, and the crease rule of the notes of 2000.
+    fn modified_butterfly(&self, boundary: Boundary) -> Polygons {
+        use std::f64::consts::PI;
+        let own = |a: &Around, v: usize, w: usize| -> Option<Point> {
+            let (ring, closed) = self.ring(a, v);
+            let at = ring.iter().position(|&x| x == w).unwrap();
+            let p = |j: usize| self.points[ring[j % ring.len()]];
+            if closed {
+                let k = ring.len();
+                let weights: Vec<f64> = match k {
+                    6 => return None,
+                    3 => vec![5.0 / 12.0, -1.0 / 12.0, -1.0 / 12.0],
+                    4 => vec![3.0 / 8.0, 0.0, -1.0 / 8.0, 0.0],
+                    _ => (0..k)
+                        .map(|j| j as f64 / k as f64)
+                        .map(|t| (0.25 + (2.0 * PI * t).cos() + 0.5 * (4.0 * PI * t).cos()) / k as f64)
+                        .collect(),
+                };
+                let mut terms: Vec<_> = weights.iter().enumerate().map(|(j, &s)| (s, p(at + j))).collect();
+                terms.push((0.75, self.points[v]));
+                return Some(mix(&terms));
+            }
+            let k = ring.len() - 1;
+            if k == 3 {
+                return None;
+            }
+            let (n, t, i) = (k as f64, PI / k as f64, at as f64);
+            let end =
+                0.25 * (i * t).cos() - (2.0 * t).sin() * (2.0 * t * i).sin() / (4.0 * n * (t.cos() - (2.0 * t).cos()));
+            let mut terms = vec![
+                (1.0 - t.sin() * (i * t).sin() / (n * (1.0 - t.cos())), self.points[v]),
+                (end, p(0)),
+                (-end, p(k)),
+            ];
+            for j in 1..k {
+                let s = j as f64;
+                let weight = ((i * t).sin() * (s * t).sin() + 0.5 * (2.0 * i * t).sin() * (2.0 * s * t).sin()) / n;
+                terms.push((weight, p(j)));
+            }
+            Some(mix(&terms))
+        };
+        self.interpolated(|a, v, w, faces| {
+            if faces.len() == 1 {
+                return self.four_points(a, v, w, 1.0 / 16.0, boundary);
+            }
+            match (own(a, v, w), own(a, w, v)) {
+                (None, None) => self.eight_points(a, v, w, faces, 1.0 / 16.0),
+                (Some(p), None) | (None, Some(p)) => p,
+                (Some(p), Some(q)) => mean([&p, &q]),
+            }
+        })
+    }
+
+    /// Jarek's scheme and its kin.
+    fn j_spline(&self, s: f64, moves: bool, boundary: Boundary) -> Polygons {
+        let a = self.around();
+        let toward = |v: usize| -> Point {
+            let corner = boundary == Boundary::EdgeAndCorner && a.faces[v].len() == 1;
+            let around: Vec<usize> = match (a.rim[v].is_empty(), corner) {
+                (true, _) => a.neighbours[v].iter().copied().collect(),
+                (false, false) => a.rim[v].clone(),
+                (false, true) => vec![v],
+            };
+            mix(&[(1.0, mean(around.iter().map(|&w| &self.points[w]))), (-1.0, self.points[v])])
+        };
+        let mut out = self.interpolated(|_, v, w, _| {
+            let m = mean([&self.points[v], &self.points[w]]);
+            mix(&[(1.0, m), (-(1.0 - s) / 8.0, toward(v)), (-(1.0 - s) / 8.0, toward(w))])
+        });
+        if moves {
+            for v in 0..self.points.len() {
+                out.points[v] = mix(&[(1.0, self.points[v]), (s / 4.0, toward(v))]);
+            }
         }
         out
     }
@@ -183,6 +331,7 @@ fn polygons(soup: &limn_mesh::Soup) -> Polygons {
     }
 }
 
+/// `id` may be followed by values of the scheme's parameters.
 fn compare(
     what: &str,
     mesh: &limn_mesh::Mesh,
@@ -194,7 +343,11 @@ fn compare(
     let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
     for level in 1..=2 {
         naive = step(&naive);
-        let plan = Plan { scheme: scheme(id).unwrap(), boundary, level };
+        let mut words = id.split(' ');
+        let mut plan = Plan::new(scheme(words.next().unwrap()).unwrap(), boundary, level);
+        for (at, value) in words.enumerate() {
+            assert!(plan.params.set(&plan.scheme.info, at, value.parse().unwrap()));
+        }
         let ours = evaluate(mesh, plan, &positions, |_| ()).unwrap();
         let d = distance(&ours, &naive.points);
         assert!(d < 1e-12, "{what}, {id}, level {level}, {boundary:?}: off by {d}");
@@ -213,7 +366,14 @@ fn schemes_equal_their_papers() {
             compare(&name, &mesh, "catmull-clark", boundary, polygons(&soup), |p| p.catmull_clark(boundary));
             compared += 1;
             if mesh.is_triangles() {
-                compare(&name, &mesh, "loop", boundary, polygons(&soup), |p| p.loop_(boundary));
+                let polygons = || polygons(&soup);
+                compare(&name, &mesh, "loop", boundary, polygons(), |p| p.loop_(boundary, false));
+                compare(&name, &mesh, "loop 1", boundary, polygons(), |p| p.loop_(boundary, true));
+                compare(&name, &mesh, "butterfly", boundary, polygons(), |p| p.butterfly(1.0 / 16.0, boundary));
+                compare(&name, &mesh, "butterfly 0.03", boundary, polygons(), |p| p.butterfly(0.03, boundary));
+                compare(&name, &mesh, "modified-butterfly", boundary, polygons(), |p| p.modified_butterfly(boundary));
+                compare(&name, &mesh, "j-spline", boundary, polygons(), |p| p.j_spline(0.5, true, boundary));
+                compare(&name, &mesh, "j-spline 1.2 1", boundary, polygons(), |p| p.j_spline(1.2, false, boundary));
             }
         }
         let triangles = mesh.is_triangles();
@@ -252,7 +412,7 @@ fn baumgartners_table() {
             soup = limn_mesh::triangulate_soup(&soup).0;
         }
         let mesh = build(&soup);
-        let plan = |level| Plan { scheme: scheme(id).unwrap(), boundary: Boundary::default(), level };
+        let plan = |level| Plan::new(scheme(id).unwrap(), Boundary::default(), level);
         (0..=4).map(|level| limn_mesh::refine(&mesh, plan(level), u64::MAX).unwrap().faces.count()).collect()
     };
     for id in ["loop", "linear"] {

@@ -20,13 +20,18 @@ fn check(json: &str) {
     let (mesh, report) = Mesh::build(&soup, Weld::Off).unwrap();
     assert_eq!(report.notes, []);
     let mesh = Arc::new(mesh);
-    let id = if oracle["scheme"] == "loop" { "loop" } else { "catmull-clark" };
+    // What the libraries call them.
+    let id = match oracle["scheme"].as_str().unwrap() {
+        "catmark" => "catmull-clark",
+        "butterfly" => "modified-butterfly",
+        other => other,
+    };
     // CGAL and OpenMesh round boundary corners as OpenSubdiv's EDGE_ONLY does.
     let corner = oracle["options"]["vtxBoundary"].as_str() == Some("EDGE_AND_CORNER");
     let boundary = if corner { Boundary::EdgeAndCorner } else { Boundary::EdgeOnly };
     for theirs in oracle["levels"].as_array().unwrap() {
         let level = theirs["level"].as_u64().unwrap() as u32;
-        let plan = Plan { scheme: scheme(id).unwrap(), boundary, level };
+        let plan = Plan::new(scheme(id).unwrap(), boundary, level);
         // Every library was given the positions rounded to f32.
         let rounded: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
         let exact = evaluate(&mesh, plan, &rounded, |_| ()).unwrap();
@@ -53,4 +58,5 @@ oracles! {
     osd_cube_catmark osd_tetra_catmark osd_grid3_catmark_edgeonly osd_grid3_catmark_edgecorner
     osd_icosa_loop osd_tetra_loop osd_gridtri3_loop_edgeonly osd_gridtri3_loop_edgecorner
     cgal_cube_catmark cgal_tetra_catmark cgal_tetra_loop cgal_gridtri3_loop openmesh_icosa_loop
+    openmesh_icosa_butterfly openmesh_tetra_butterfly
 }

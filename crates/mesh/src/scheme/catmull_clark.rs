@@ -29,7 +29,10 @@ impl Scheme for CatmullClark {
         source: "Catmull & Clark 1978",
         accepts: Accepts::Polygons,
         interpolating: false,
+        params: &[],
     };
+
+    const COMMON: bool = true;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -31,7 +31,10 @@ impl Scheme for Linear {
         source: "folklore",
         accepts: Accepts::Both,
         interpolating: true,
+        params: &[],
     };
+
+    const COMMON: bool = true;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

@@ -10,21 +10,36 @@
 //!
 //! Limit: rules look at one level at a time; what they need from further up must be carried by tags.
 
+mod butterfly;
 mod catmull_clark;
+mod j_spline;
 mod linear;
 #[path = "loop.rs"]
 mod loop_;
+mod modified_butterfly;
+mod params;
 
+pub use butterfly::Butterfly;
 pub use catmull_clark::CatmullClark;
+pub use j_spline::JSpline;
 pub use linear::Linear;
 pub use loop_::Loop;
+pub use modified_butterfly::ModifiedButterfly;
+pub use params::{Domain, MOST_PARAMS, Param, Params};
 
 use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
 /// Every scheme, in the order of the menu.
-pub static SCHEMES: &[Entry] = &[entry::<CatmullClark>(), entry::<Loop>(), entry::<Linear>()];
+pub static SCHEMES: &[Entry] = &[
+    entry::<CatmullClark>(),
+    entry::<Loop>(),
+    entry::<JSpline>(),
+    entry::<Butterfly>(),
+    entry::<ModifiedButterfly>(),
+    entry::<Linear>(),
+];
 
 /// The scheme with this id.
 pub fn scheme(id: &str) -> Option<&'static Entry> {
@@ -32,7 +47,7 @@ pub fn scheme(id: &str) -> Option<&'static Entry> {
 }
 
 /// What a scheme is called and promises.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub struct Info {
     /// The permanent id: commands and links store it.
     pub id: &'static str,
@@ -48,6 +63,8 @@ pub struct Info {
     pub accepts: Accepts,
     /// Whether the vertices of a level keep their positions in the next.
     pub interpolating: bool,
+    /// What can be set, in the order of [`Params`].
+    pub params: &'static [Param],
 }
 
 /// Which faces a scheme can refine.
@@ -89,6 +106,8 @@ pub struct Tags<'a> {
     pub boundary: Boundary,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
+    /// The scheme's parameters: [`Params::of`].
+    pub params: [f64; MOST_PARAMS],
 }
 
 impl Tags<'_> {
@@ -110,6 +129,8 @@ impl Tags<'_> {
 pub trait Scheme: 'static {
     /// Its entry in the registry.
     const INFO: Info;
+    /// Whether it is worth a compilation of its own for level 0; others take that one step with a branch an access.
+    const COMMON: bool = false;
 
     /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K);
@@ -138,12 +159,11 @@ const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
         eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
-            (Level::Base(c), _) => S::rules(*c, split, tags, sink),
+            (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
             (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
             (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
-            (Level::Quads(_), Accepts::Triangles) | (Level::Triangles(_), Accepts::Polygons) => {
-                unreachable!("a scheme's own split made the level")
-            }
+            _ if S::COMMON => unreachable!("a scheme's own split made the level"),
+            _ => S::rules(level, split, tags, sink),
         },
         record: |level, split, tags, sink| S::rules(level, split, tags, sink),
     }

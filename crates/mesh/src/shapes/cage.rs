@@ -136,8 +136,8 @@ impl Cage {
         let edge = |f: usize, c: usize| (n + m + number[4 * f + c]) as u32;
         let mut quads = Vec::with_capacity(4 * m);
         for (f, q) in self.quads.iter().enumerate() {
-            for c in 0..4 {
-                quads.push([q[c], edge(f, c), (n + f) as u32, edge(f, (c + 3) % 4)]);
+            for (c, &v) in q.iter().enumerate() {
+                quads.push([v, edge(f, c), (n + f) as u32, edge(f, (c + 3) % 4)]);
             }
         }
         Cage { points, quads }

@@ -126,45 +126,59 @@ pub(crate) use on;
 
 /// The same answers with a branch each: for what need not be fast and should not be compiled three times.
 impl Connectivity for Level<'_> {
+    #[inline(never)]
     fn vertices(&self) -> u32 {
         on!(self, c => c.vertices())
     }
+    #[inline(never)]
     fn edges(&self) -> u32 {
         on!(self, c => c.edges())
     }
+    #[inline(never)]
     fn faces(&self) -> u32 {
         on!(self, c => c.faces())
     }
+    #[inline(never)]
     fn half_edges(&self) -> u32 {
         on!(self, c => c.half_edges())
     }
+    #[inline(never)]
     fn boundary_half_edges(&self) -> u32 {
         on!(self, c => c.boundary_half_edges())
     }
+    #[inline(never)]
     fn face_half_edges(&self, f: u32) -> std::ops::Range<u32> {
         on!(self, c => c.face_half_edges(f))
     }
+    #[inline(never)]
     fn face(&self, h: u32) -> u32 {
         on!(self, c => c.face(h))
     }
+    #[inline(never)]
     fn next(&self, h: u32) -> u32 {
         on!(self, c => c.next(h))
     }
+    #[inline(never)]
     fn prev(&self, h: u32) -> u32 {
         on!(self, c => c.prev(h))
     }
+    #[inline(never)]
     fn twin(&self, h: u32) -> u32 {
         on!(self, c => c.twin(h))
     }
+    #[inline(never)]
     fn origin(&self, h: u32) -> u32 {
         on!(self, c => c.origin(h))
     }
+    #[inline(never)]
     fn edge(&self, h: u32) -> u32 {
         on!(self, c => c.edge(h))
     }
+    #[inline(never)]
     fn vertex_half_edge(&self, v: u32) -> u32 {
         on!(self, c => c.vertex_half_edge(v))
     }
+    #[inline(never)]
     fn edge_half_edge(&self, e: u32) -> u32 {
         on!(self, c => c.edge_half_edge(e))
     }
