@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use limn_formats::Model;
 use limn_formats::parcel::Notice;
-use limn_mesh::{Accepts, Mesh, Plan, Prediction, RefineError, Soup, Weld, predict, shape};
+use limn_mesh::{Accepts, Mesh, Params, Plan, Prediction, RefineError, Soup, Weld, predict, shape};
 
 use crate::build::{Edit, Remark};
 use crate::camera::{Bounds, Standard};
@@ -28,6 +28,7 @@ use crate::error::CommandError;
 use crate::history::History;
 use crate::link::{self, LinkError};
 use crate::outcome::{Outcome, Replayed};
+use crate::parameters;
 use crate::source::Source;
 use crate::state::{State, check, find_scheme};
 use crate::view::{View, ViewSet};
@@ -296,6 +297,7 @@ impl Document {
                 settings.quads = *on;
                 if *on && settings.scheme.info.accepts == Accepts::Triangles {
                     settings.scheme = find_scheme("catmull-clark")?;
+                    settings.params = Params::default();
                 }
             }
             Command::Triangulate => Arc::make_mut(&mut after.edits).push(Edit::Triangulate),
@@ -303,9 +305,7 @@ impl Document {
             Command::Scale(factor) => Arc::make_mut(&mut after.edits).push(Edit::Scale(*factor)),
             Command::Scheme { id, parameters } => {
                 let entry = find_scheme(id)?;
-                if let Some((key, _)) = parameters.first() {
-                    return Err(CommandError::UnknownParameter { scheme: entry.info.id, key: key.clone() });
-                }
+                settings.params = parameters::read(&entry.info, parameters)?;
                 settings.scheme = entry;
             }
             Command::Boundary(boundary) => settings.boundary = *boundary,

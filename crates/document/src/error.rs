@@ -27,12 +27,24 @@ pub enum CommandError {
         id: String,
     },
     /// The scheme does not take this parameter.
-    #[error("the scheme {scheme} has no parameter `{key}`; it takes none")]
+    #[error("the scheme {scheme} has no parameter `{key}`; {known}")]
     UnknownParameter {
         /// The scheme's id.
         scheme: &'static str,
         /// The key given.
         key: String,
+        /// What it takes, in words.
+        known: String,
+    },
+    /// A parameter cannot be that.
+    #[error("`{key}={value}` is not possible; {key} is {expected}")]
+    BadParameter {
+        /// The parameter.
+        key: &'static str,
+        /// The value given.
+        value: String,
+        /// What it can be.
+        expected: String,
     },
     /// A level below the model itself.
     #[error("there is no level {0}: level 0 is the model itself and the lowest")]

@@ -30,6 +30,7 @@ pub mod link;
 mod merge;
 pub mod numbers;
 mod outcome;
+pub mod parameters;
 mod pinch;
 pub mod source;
 mod state;

@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use limn_formats::Model;
 use limn_formats::parcel::Notice;
-use limn_mesh::{Accepts, Boundary, Entry, Job, Mesh, Plan, RefineError, Weld, predict, scheme};
+use limn_mesh::{Accepts, Boundary, Entry, Job, Mesh, Params, Plan, RefineError, Weld, predict, scheme};
 
 use crate::build::{Base, BuildError, Built, Edit, Remark};
 use crate::command::Command;
 use crate::error::CommandError;
+use crate::parameters;
 use crate::source::Source;
 
 /// What `settings` of the last-wins kind are set to.
@@ -21,6 +22,7 @@ pub(crate) struct Settings {
     pub weld: Option<Weld>,
     pub quads: bool,
     pub scheme: &'static Entry,
+    pub params: Params,
     pub boundary: Boundary,
     pub level: u32,
 }
@@ -45,14 +47,22 @@ impl State {
         let model = Arc::new(model);
         let base = Arc::new(Base::build(&model, false, &[], model.weld)?);
         let scheme = find_scheme(if base.polygons.mesh.is_triangles() { "loop" } else { "catmull-clark" })?;
-        let settings = Settings { weld: None, quads: false, scheme, boundary: Boundary::default(), level: 0 };
+        let settings = Settings {
+            weld: None,
+            quads: false,
+            scheme,
+            params: Params::default(),
+            boundary: Boundary::default(),
+            level: 0,
+        };
         let imported = notices.iter().map(|n| Remark::new(&n.text, n.minor)).collect();
         let built = base.polygons.clone();
         Ok(State { source, model, imported, edits: Arc::default(), settings, base, built, adapted: None })
     }
 
     pub fn plan(&self) -> Plan {
-        Plan { scheme: self.settings.scheme, boundary: self.settings.boundary, level: self.settings.level }
+        let Settings { scheme, params, boundary, level, .. } = self.settings;
+        Plan { scheme, params, boundary, level }
     }
 
     /// Whether the two lead to the same picture and the same text.
@@ -91,7 +101,7 @@ impl State {
             Edit::Center => Command::Center,
             Edit::Scale(factor) => Command::Scale(*factor),
         }));
-        commands.push(Command::Scheme { id: s.scheme.info.id.to_owned(), parameters: Vec::new() });
+        commands.push(parameters::command(&self.plan()));
         commands.extend((s.boundary != Boundary::default()).then_some(Command::Boundary(s.boundary)));
         commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
         commands

@@ -120,7 +120,8 @@ fn completion_knows_commands_arguments_and_keys() {
     assert_eq!(complete("re"), ["redo", "reload"]);
     assert_eq!(complete("boundary "), ["edge-only", "edge-and-corner"]);
     assert_eq!(complete("open builtin:t"), ["builtin:t-shape", "builtin:torus", "builtin:tetrahedron"]);
-    assert_eq!(complete("scheme "), ["catmull-clark", "loop", "linear"]);
+    assert_eq!(complete("scheme ").len(), limn_mesh::SCHEMES.len());
+    assert_eq!(complete("scheme mod"), ["modified-butterfly"]);
     assert_eq!(complete("view sh"), ["shading="]);
     assert_eq!(complete("view edges=o"), ["edges=off", "edges=on", "edges=only"]);
     assert_eq!(complete("view edges=on cam"), ["camera="]);

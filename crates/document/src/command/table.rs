@@ -327,8 +327,9 @@ pub static COMMANDS: &[Spec] = &[
         flags: &[],
         keys: Keys::Parameters,
         summary: "choose the subdivision scheme",
-        detail: "A scheme for triangles triangulates other faces first, and the report says so.",
-        example: "scheme catmull-clark",
+        detail: "A scheme for triangles triangulates other faces first, and the report says so. What a scheme lets one set follows as \
+                 KEY=VALUE; what is not named has its default.",
+        example: "scheme loop weights=warren",
         build: |p| match p.values.into_iter().next()? {
             Value::Text(id) => Some(Command::Scheme { id, parameters: p.parameters }),
             _ => None,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use limn_document::parameters;
 use limn_document::view::Shading;
 use limn_mesh::{Connectivity, Mesh};
 
@@ -130,8 +131,7 @@ impl Engine {
         };
         // The level comes down first: the other settings could not be paid for at the one that was too much.
         let level = format!("level {}", shown.plan.level);
-        for command in
-            [level.clone(), format!("scheme {}", shown.plan.scheme.info.id), format!("boundary {rule}"), level]
+        for command in [level.clone(), parameters::command(&shown.plan).to_string(), format!("boundary {rule}"), level]
         {
             let _ = self.document.run(&command);
         }

@@ -1,0 +1,105 @@
+//! A scheme's parameters as text: `weights=warren`, `w=0.05`.
+//!
+//! The registry says what there is and what it can be; this reads `key=value` words against it and writes back what was
+//! set. Numbers keep the digits that bring them back.
+
+use limn_mesh::{Domain, Info, Param, Params, Plan};
+
+use crate::command::Command;
+use crate::error::CommandError;
+use crate::numbers::number;
+
+/// Reads words against the scheme's list. A key that comes twice counts the last time.
+pub(crate) fn read(info: &'static Info, words: &[(String, String)]) -> Result<Params, CommandError> {
+    let mut params = Params::default();
+    for (key, text) in words {
+        let at = info.params.iter().position(|p| p.key == key);
+        let Some((at, param)) = at.and_then(|at| Some((at, info.params.get(at)?))) else {
+            return Err(CommandError::UnknownParameter { scheme: info.id, key: key.clone(), known: keys(info) });
+        };
+        let value = match &param.domain {
+            Domain::Number { .. } => number(text),
+            Domain::Choice(words) => words.iter().position(|w| w == text).map(|i| i as f64),
+        };
+        if !value.is_some_and(|v| params.set(info, at, v)) {
+            return Err(CommandError::BadParameter {
+                key: param.key,
+                value: crate::words::shorten(text),
+                expected: expected(param),
+            });
+        }
+    }
+    Ok(params)
+}
+
+/// The words for what was set.
+fn write(info: &Info, params: &Params) -> Vec<(String, String)> {
+    let set = info.params.iter().enumerate().filter_map(|(at, p)| Some((p, params.get(at)?)));
+    set.map(|(param, value)| (param.key.to_owned(), text(param, value))).collect()
+}
+
+/// The command that chooses the scheme of a plan, parameters and all.
+pub fn command(plan: &Plan) -> Command {
+    let info = &plan.scheme.info;
+    Command::Scheme { id: info.id.to_owned(), parameters: write(info, &plan.params) }
+}
+
+/// A value as a word.
+pub fn text(param: &Param, value: f64) -> String {
+    match &param.domain {
+        Domain::Number { .. } => value.to_string(),
+        Domain::Choice(words) => words.get(value as usize).copied().unwrap_or_default().to_owned(),
+    }
+}
+
+/// What a parameter can be, for messages: "a number from 0 to 0.125", "loop or warren".
+pub fn expected(param: &Param) -> String {
+    match &param.domain {
+        Domain::Number { low, high, .. } => format!("a number from {low} to {high}"),
+        Domain::Choice(words) => words.join(" or "),
+    }
+}
+
+fn keys(info: &Info) -> String {
+    let keys: Vec<&str> = info.params.iter().map(|p| p.key).collect();
+    if keys.is_empty() { "it takes none".into() } else { format!("it takes {}", keys.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Document;
+
+    #[test]
+    fn parameters_come_back_as_they_were_set() {
+        let mut document = Document::new(1 << 30);
+        document.run("open builtin:pawn").unwrap();
+        for (line, kept) in [
+            ("scheme loop weights=warren", "scheme loop weights=warren"),
+            ("scheme loop", "scheme loop"),
+            ("scheme butterfly w=0.05", "scheme butterfly w=0.05"),
+            ("scheme j-spline move=off s=1.25", "scheme j-spline s=1.25 move=off"),
+        ] {
+            document.run(line).unwrap();
+            assert!(
+                document.text().lines().any(|l| l == kept) || document.text().contains(kept),
+                "{}",
+                document.text()
+            );
+            let mut again = Document::new(1 << 30);
+            document.text().lines().for_each(|l| _ = again.run(l).unwrap());
+            assert_eq!(again.text(), document.text());
+        }
+        let refuse = |document: &mut Document, line: &str| document.run(line).unwrap_err().to_string();
+        assert_eq!(refuse(&mut document, "scheme loop w=1"), "the scheme loop has no parameter `w`; it takes weights");
+        assert_eq!(
+            refuse(&mut document, "scheme butterfly w=2"),
+            "`w=2` is not possible; w is a number from 0 to 0.125"
+        );
+        assert_eq!(
+            refuse(&mut document, "scheme loop weights=mine"),
+            "`weights=mine` is not possible; weights is loop or warren"
+        );
+        assert_eq!(refuse(&mut document, "scheme linear s=1"), "the scheme linear has no parameter `s`; it takes none");
+        assert!(document.text().contains("j-spline"), "a refused scheme changes nothing");
+    }
+}
