@@ -89,8 +89,11 @@ fn failures_are_one_sentence_and_change_nothing() {
     );
     let mut d = document("open builtin:cube level 1");
     assert_eq!(error(&mut d, "level -1"), "there is no level -1: level 0 is the model itself and the lowest");
-    assert_eq!(error(&mut d, "scheme nurbs"), "there is no scheme `nurbs`; there are catmull-clark, loop, j-spline, butterfly, modified-butterfly, linear");
-    assert_eq!(error(&mut d, "scheme loop w=1"), "the scheme loop has no parameter `w`; it takes none");
+    assert_eq!(
+        error(&mut d, "scheme nurbs"),
+        "there is no scheme `nurbs`; there are catmull-clark, loop, j-spline, butterfly, modified-butterfly, linear"
+    );
+    assert_eq!(error(&mut d, "scheme loop w=1"), "the scheme loop has no parameter `w`; it takes weights");
     assert_eq!(error(&mut d, "redo"), "there is nothing to redo");
     assert_eq!(error(&mut d, "reload"), "cube is built in and has no file to read again");
     assert_eq!(error(&mut d, "view hide=arm"), "the model has no group `arm`; it has no groups");

@@ -133,6 +133,7 @@ pub struct Making {
 }
 
 /// What a step came to.
+#[allow(clippy::large_enum_variant)] // One lives at a time.
 pub enum Step {
     /// There is more to do.
     More,
