@@ -175,7 +175,7 @@ fn every_mode_that_has_faces() {
     }
     assert_eq!(file.read().1, ["4 primitives of points or lines (first meshes[0].primitives[1]) are not used."]);
     file.primitives.push(json!({"attributes": {"POSITION": 0}, "mode": 9}));
-    assert_eq!(file.fails(), "meshes[0].primitives[5]: its mode 9 is none that glTF has.");
+    assert_eq!(file.fails(), "meshes[0].primitives[5]: its mode is none that glTF has.");
 }
 
 #[test]
@@ -250,7 +250,11 @@ fn instancing_extension() {
 #[test]
 fn without_nodes_or_scenes() {
     let mut file = File::two_triangles().with(json!({"nodes": [], "scenes": [], "scene": null}));
+    assert_eq!(file.quiet().soup.positions, SQUARE);
+    file.more["scene"] = 0.5.into();
     assert_eq!(file.fails(), "The file: its scene is not a whole number.");
+    file.more["scene"] = 0.into();
+    assert_eq!(file.fails(), "The file: its scene is 0, but the file has only 0.");
     let root = |file: &File| {
         let mut root = file.root(json!({"byteLength": file.bin.len()}));
         root.as_object_mut().unwrap().retain(|k, _| !matches!(k.as_str(), "scene" | "scenes"));
@@ -509,9 +513,9 @@ fn errors_name_the_element() {
         (|f| f.accessors[0]["count"] = (-1).into(), "accessors[0]: its count is not a whole number."),
         (
             |f| f.accessors[0]["componentType"] = 5124.into(),
-            "accessors[0]: its componentType 5124 is none that glTF 2.0 has.",
+            "accessors[0]: its componentType is none that glTF 2.0 has.",
         ),
-        (|f| f.accessors[0]["type"] = "MAT4".into(), "accessors[0]: its type MAT4 cannot be used here."),
+        (|f| f.accessors[0]["type"] = "MAT4".into(), "accessors[0]: its type is a matrix, which cannot be used here."),
         (|f| f.accessors[0]["type"] = "VEC2".into(), "accessors[0]: positions must have three components."),
         (|f| f.accessors[0]["bufferView"] = 7.into(), "accessors[0]: its bufferView is 7, but the file has only 2."),
         (
@@ -561,7 +565,7 @@ fn errors_name_the_element() {
         ),
         (
             |f| f.more = json!({"nodes": [{"children": [1.5]}]}),
-            "nodes[0]: its children name node 1.5, but the file has only 1.",
+            "nodes[0]: its children name node 1.5, which is not a whole number.",
         ),
         (
             |f| f.more = json!({"nodes": [{"mesh": 0, "matrix": [1, 2]}]}),

@@ -11,57 +11,48 @@
 
 use std::fmt::Arguments;
 
-use serde_json::Value;
-
-use super::{
-    container::Source,
-    json::{bad, index, list, text, whole},
+use gltf::json::{
+    accessor::{ComponentType, Type, sparse},
+    validation::{Checked, USize64},
 };
-use crate::{ReadError, error::short};
 
-/// A component type, by its number in the file.
-#[derive(Clone, Copy, PartialEq)]
-enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
+use super::{container::Source, document::bad};
+use crate::ReadError;
+
+/// What an accessor's component type says of its bytes.
+trait Component: Copy {
+    /// Bytes. The crate's own `size` is a call that is not inlined, in loops over every component.
+    fn bytes(self) -> usize;
+
+    /// The value at the start of `bytes`, which has at least `size` bytes (else 0).
+    fn float(self, bytes: &[u8]) -> f32;
+
+    /// The same as an index; 0 for types that cannot be one.
+    fn integer(self, bytes: &[u8]) -> u32;
+
+    /// What a normalised integer is divided by.
+    fn full(self) -> f32;
 }
 
-impl Component {
-    fn of(value: &Value, place: Arguments<'_>) -> Result<Self, ReadError> {
-        Ok(match whole(value, "componentType", place)? {
-            Some(5120) => Component::I8,
-            Some(5121) => Component::U8,
-            Some(5122) => Component::I16,
-            Some(5123) => Component::U16,
-            Some(5125) => Component::U32,
-            Some(5126) => Component::F32,
-            Some(other) => return Err(bad(place, format!("its componentType {other} is none that glTF 2.0 has"))),
-            None => return Err(bad(place, "it has no componentType")),
-        })
-    }
-
-    fn size(self) -> usize {
+impl Component for ComponentType {
+    #[inline]
+    fn bytes(self) -> usize {
         match self {
-            Component::I8 | Component::U8 => 1,
-            Component::I16 | Component::U16 => 2,
-            Component::U32 | Component::F32 => 4,
+            ComponentType::I8 | ComponentType::U8 => 1,
+            ComponentType::I16 | ComponentType::U16 => 2,
+            ComponentType::U32 | ComponentType::F32 => 4,
         }
     }
 
-    /// The value at the start of `bytes`, which has at least `size` bytes (else 0).
     #[inline]
     fn float(self, bytes: &[u8]) -> f32 {
         match (self, bytes) {
-            (Component::I8, [a, ..]) => f32::from(*a as i8),
-            (Component::U8, [a, ..]) => f32::from(*a),
-            (Component::I16, [a, b, ..]) => f32::from(i16::from_le_bytes([*a, *b])),
-            (Component::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])),
-            (Component::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]) as f32,
-            (Component::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
+            (ComponentType::I8, [a, ..]) => f32::from(*a as i8),
+            (ComponentType::U8, [a, ..]) => f32::from(*a),
+            (ComponentType::I16, [a, b, ..]) => f32::from(i16::from_le_bytes([*a, *b])),
+            (ComponentType::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])),
+            (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]) as f32,
+            (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
             _ => 0.0,
         }
     }
@@ -69,22 +60,21 @@ impl Component {
     #[inline]
     fn integer(self, bytes: &[u8]) -> u32 {
         match (self, bytes) {
-            (Component::U8, [a, ..]) => u32::from(*a),
-            (Component::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
-            (Component::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
+            (ComponentType::U8, [a, ..]) => u32::from(*a),
+            (ComponentType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
+            (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
             _ => 0,
         }
     }
 
-    /// What a normalised integer is divided by.
     fn full(self) -> f32 {
         match self {
-            Component::I8 => 127.0,
-            Component::U8 => 255.0,
-            Component::I16 => 32767.0,
-            Component::U16 => 65535.0,
-            Component::U32 => u32::MAX as f32,
-            Component::F32 => 1.0,
+            ComponentType::I8 => 127.0,
+            ComponentType::U8 => 255.0,
+            ComponentType::I16 => 32767.0,
+            ComponentType::U16 => 65535.0,
+            ComponentType::U32 => u32::MAX as f32,
+            ComponentType::F32 => 1.0,
         }
     }
 }
@@ -93,7 +83,7 @@ impl Component {
 pub(super) struct Accessor<'s> {
     number: usize,
     pub count: usize,
-    component: Component,
+    component: ComponentType,
     pub width: usize,
     normalized: bool,
     /// The first element's bytes and what follows; `None` means all zeros.
@@ -104,7 +94,7 @@ pub(super) struct Accessor<'s> {
 
 struct Sparse<'s> {
     count: usize,
-    component: Component,
+    component: ComponentType,
     indices: &'s [u8],
     values: &'s [u8],
 }
@@ -112,12 +102,10 @@ struct Sparse<'s> {
 /// Cuts `count` elements of `size` bytes, `stride` apart, out of a view.
 fn cut<'s>(
     source: &'s Source<'_>,
-    holder: &Value,
-    view: usize,
+    (view, offset): (usize, u64),
     (count, size): (u64, usize),
     place: Arguments<'_>,
 ) -> Result<(&'s [u8], usize), ReadError> {
-    let offset = whole(holder, "byteOffset", place)?.unwrap_or(0);
     let (bytes, stride) = source.view(view)?;
     let stride = stride.unwrap_or(size as u64);
     if stride < size as u64 {
@@ -145,41 +133,35 @@ impl<'s> Accessor<'s> {
     /// Looks up and checks an accessor.
     pub fn new(source: &'s Source<'_>, number: usize) -> Result<Self, ReadError> {
         let place = format_args!("accessors[{number}]");
-        let Some(value) = list(&source.root, "accessors").get(number) else {
-            return Err(bad(place, "there is no such accessor"));
+        let value = source.document.accessors.get(number)?;
+        let Checked::Valid(component) = value.component_type else {
+            return Err(bad(place, "its componentType is none that glTF 2.0 has"));
         };
-        let views = list(&source.root, "bufferViews").len();
-        let component = Component::of(value, place)?;
-        let width = match text(value, "type") {
-            Some("SCALAR") => 1,
-            Some("VEC2") => 2,
-            Some("VEC3") => 3,
-            Some("VEC4") => 4,
-            other => {
-                return Err(bad(
-                    place,
-                    format!("its type {} cannot be used here", short(other.unwrap_or("(missing)"))),
-                ));
-            }
+        let component = component.0;
+        let width = match value.type_ {
+            Checked::Valid(kind @ (Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4)) => kind.multiplicity(),
+            Checked::Valid(_) => return Err(bad(place, "its type is a matrix, which cannot be used here")),
+            Checked::Invalid => return Err(bad(place, "its type is none that glTF 2.0 has")),
         };
-        let count = whole(value, "count", place)?.ok_or_else(|| bad(place, "it has no count"))?;
+        let USize64(count) = value.count;
         if count >= u64::from(u32::MAX) {
             return Err(bad(place, format!("its {count} elements are more than 32 bits can number")));
         }
-        let size = component.size() * width;
-        let (data, stride) = match index(value, "bufferView", views, place)? {
+        let size = component.bytes() * width;
+        let (data, stride) = match value.buffer_view {
             Some(view) => {
-                let (data, stride) = cut(source, value, view, (count, size), place)?;
+                let view = source.document.views.check(view.value(), "bufferView", place)?;
+                let offset = value.byte_offset.unwrap_or_default().0;
+                let (data, stride) = cut(source, (view, offset), (count, size), place)?;
                 (Some(data), stride)
             }
             None => (None, size),
         };
-        let sparse = match value.get("sparse") {
+        let sparse = match &value.sparse {
             Some(sparse) => Some(Sparse::new(source, sparse, (number, count, size))?),
             None => None,
         };
-        let normalized =
-            component != Component::F32 && value.get("normalized").and_then(Value::as_bool).unwrap_or(false);
+        let normalized = component != ComponentType::F32 && value.normalized;
         Ok(Accessor { number, count: count as usize, component, width, normalized, data, stride, sparse })
     }
 
@@ -197,7 +179,7 @@ impl<'s> Accessor<'s> {
             }
         }
         if let Some(sparse) = &self.sparse {
-            let size = self.component.size() * self.width;
+            let size = self.component.bytes() * self.width;
             for (index, bytes) in sparse.indices().zip(sparse.values.chunks(size)) {
                 match out.get_mut(start + index as usize).filter(|_| (index as usize) < self.count) {
                     Some(slot) => *slot = self.element(rest, bytes),
@@ -211,7 +193,7 @@ impl<'s> Accessor<'s> {
     #[inline]
     fn element<const N: usize>(&self, rest: f32, bytes: &[u8]) -> [f32; N] {
         let mut out = [rest; N];
-        let size = self.component.size();
+        let size = self.component.bytes();
         for (slot, bytes) in out.iter_mut().take(self.width).zip(bytes.chunks(size)) {
             let value = self.component.float(bytes);
             // The smallest integer of a signed type is one below -full.
@@ -223,7 +205,7 @@ impl<'s> Accessor<'s> {
     /// All elements as indices: one unsigned integer each.
     pub fn integers(&self) -> Result<Vec<u32>, ReadError> {
         let place = format_args!("accessors[{}]", self.number);
-        if self.width != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {
+        if self.width != 1 || !matches!(self.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
             return Err(bad(place, "indices must be unsigned integers, one each"));
         }
         let mut out = match self.data {
@@ -233,7 +215,7 @@ impl<'s> Accessor<'s> {
             }
         };
         if let Some(sparse) = &self.sparse {
-            for (index, bytes) in sparse.indices().zip(sparse.values.chunks(self.component.size())) {
+            for (index, bytes) in sparse.indices().zip(sparse.values.chunks(self.component.bytes())) {
                 match out.get_mut(index as usize) {
                     Some(slot) => *slot = self.component.integer(bytes),
                     None => return Err(sparse.out_of_range(self.number, index, self.count)),
@@ -245,32 +227,35 @@ impl<'s> Accessor<'s> {
 }
 
 impl<'s> Sparse<'s> {
-    fn new(source: &'s Source<'_>, sparse: &Value, (number, of, size): (usize, u64, usize)) -> Result<Self, ReadError> {
+    fn new(
+        source: &'s Source<'_>,
+        sparse: &sparse::Sparse,
+        (number, of, size): (usize, u64, usize),
+    ) -> Result<Self, ReadError> {
         let place = format_args!("accessors[{number}].sparse");
-        let views = list(&source.root, "bufferViews").len();
-        let count = whole(sparse, "count", place)?.ok_or_else(|| bad(place, "it has no count"))?;
+        let USize64(count) = sparse.count;
         if count > of {
             return Err(bad(place, format!("it replaces {count} elements of {of}")));
         }
-        let part = |key: &str| sparse.get(key).ok_or_else(|| bad(place, format!("it has no {key}")));
-        let view = |holder: &Value| {
-            index(holder, "bufferView", views, place)?.ok_or_else(|| bad(place, "it names no bufferView"))
-        };
-        let (indices, values) = (part("indices")?, part("values")?);
-        let component = Component::of(indices, place)?;
-        if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
+        let Checked::Valid(component) = sparse.indices.component_type else {
             return Err(bad(place, "its indices are not unsigned integers"));
-        }
-        let (index_bytes, stride) = cut(source, indices, view(indices)?, (count, component.size()), place)?;
-        let (value_bytes, value_stride) = cut(source, values, view(values)?, (count, size), place)?;
-        if stride != component.size() || value_stride != size {
+        };
+        let component = component.0;
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        let part = |view: usize, offset: USize64, size: usize| {
+            let view = source.document.views.check(view, "bufferView", place)?;
+            cut(source, (view, offset.0), (count, size), place)
+        };
+        let (index_bytes, stride) = part(indices.buffer_view.value(), indices.byte_offset, component.bytes())?;
+        let (value_bytes, value_stride) = part(values.buffer_view.value(), values.byte_offset, size)?;
+        if stride != component.bytes() || value_stride != size {
             return Err(bad(place, "its buffer views must not have a byteStride"));
         }
         Ok(Sparse { count: count as usize, component, indices: index_bytes, values: value_bytes })
     }
 
     fn indices(&self) -> impl Iterator<Item = u32> + '_ {
-        self.indices.chunks(self.component.size()).take(self.count).map(|bytes| self.component.integer(bytes))
+        self.indices.chunks(self.component.bytes()).take(self.count).map(|bytes| self.component.integer(bytes))
     }
 
     fn out_of_range(&self, number: usize, index: u32, count: usize) -> ReadError {

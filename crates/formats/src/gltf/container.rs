@@ -10,9 +10,9 @@
 
 use std::{borrow::Cow, cell::OnceCell, cell::RefCell};
 
-use serde_json::Value;
+use gltf::json::{self, deserialize};
 
-use super::json::{bad, index, list, text, whole};
+use super::document::{Document, bad};
 use crate::{
     Files, Limits, ReadError,
     error::{Budget, short},
@@ -22,7 +22,7 @@ use crate::{
 /// A parsed file with access to its buffers.
 pub(super) struct Source<'a> {
     pub file: &'a str,
-    pub root: Value,
+    pub document: Document,
     pub files: &'a dyn Files,
     pub budget: RefCell<Budget>,
     binary: Option<&'a [u8]>,
@@ -38,7 +38,7 @@ impl<'a> Source<'a> {
         let values = json.iter().filter(|b| matches!(b, b',' | b'[' | b'{')).count() as u64;
         budget.spend("The file's JSON", values, 64)?;
         budget.spend("The file's JSON", json.len() as u64, 1)?;
-        let root: Value = serde_json::from_slice(json).map_err(|e| {
+        let root = deserialize::from_slice(json).map_err(|e: json::Error| {
             let text = e.to_string();
             ReadError::Json {
                 file: file.to_owned(),
@@ -47,34 +47,31 @@ impl<'a> Source<'a> {
                 problem: text.split(" at line ").next().unwrap_or_default().to_owned(),
             }
         })?;
-        let buffers = list(&root, "buffers").iter().map(|_| OnceCell::new()).collect();
-        Ok(Source { file, root, files, budget: RefCell::new(budget), binary, buffers })
+        let document = Document::new(root, &mut budget)?;
+        let buffers = (0..document.buffers.len()).map(|_| OnceCell::new()).collect();
+        Ok(Source { file, document, files, budget: RefCell::new(budget), binary, buffers })
     }
 
-    /// The bytes of a buffer, at most as many as it states.
+    /// The bytes of a buffer.
     pub fn buffer(&self, number: usize) -> Result<&[u8], ReadError> {
-        let place = format_args!("buffers[{number}]");
-        let (Some(cell), Some(buffer)) = (self.buffers.get(number), list(&self.root, "buffers").get(number)) else {
-            return Err(bad(place, "there is no such buffer"));
-        };
+        let buffer = self.document.buffers.get(number)?;
+        let Some(cell) = self.buffers.get(number) else { return Ok(&[]) };
         if cell.get().is_none() {
             let bytes = self.load_buffer(buffer, number)?;
-            let stated = whole(buffer, "byteLength", place)?.ok_or_else(|| bad(place, "it has no byteLength"))?;
-            if stated > bytes.len() as u64 {
-                let have = bytes.len();
-                return Err(bad(
-                    place,
-                    format!("it should have {stated} bytes, but only {have} are there; the file is cut short"),
-                ));
+            let (stated, have) = (buffer.byte_length.0, bytes.len());
+            if stated > have as u64 {
+                let problem =
+                    format!("it should have {stated} bytes, but only {have} are there; the file is cut short");
+                return Err(bad(format_args!("buffers[{number}]"), problem));
             }
             let _ = cell.set(bytes);
         }
         Ok(cell.get().map_or(&[], |bytes| bytes))
     }
 
-    fn load_buffer(&self, buffer: &Value, number: usize) -> Result<Cow<'a, [u8]>, ReadError> {
+    fn load_buffer(&self, buffer: &json::Buffer, number: usize) -> Result<Cow<'a, [u8]>, ReadError> {
         let place = format_args!("buffers[{number}]");
-        let Some(uri) = text(buffer, "uri") else {
+        let Some(uri) = buffer.uri.as_deref() else {
             return match self.binary {
                 Some(bytes) if number == 0 => Ok(Cow::Borrowed(bytes)),
                 _ => Err(bad(place, "it has neither a uri nor a binary part in the file")),
@@ -96,14 +93,10 @@ impl<'a> Source<'a> {
     /// The bytes of a buffer view and its stride, if it states one.
     pub fn view(&self, number: usize) -> Result<(&[u8], Option<u64>), ReadError> {
         let place = format_args!("bufferViews[{number}]");
-        let Some(view) = list(&self.root, "bufferViews").get(number) else {
-            return Err(bad(place, "there is no such buffer view"));
-        };
-        let buffer =
-            index(view, "buffer", self.buffers.len(), place)?.ok_or_else(|| bad(place, "it names no buffer"))?;
-        let from = whole(view, "byteOffset", place)?.unwrap_or(0);
-        let length = whole(view, "byteLength", place)?.ok_or_else(|| bad(place, "it has no byteLength"))?;
-        let stride = whole(view, "byteStride", place)?;
+        let view = self.document.views.get(number)?;
+        let buffer = self.document.buffers.check(view.buffer.value(), "buffer", place)?;
+        let (from, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
+        let stride = view.byte_stride.map(|stride| stride.0 as u64);
         let bytes = self.buffer(buffer)?;
         let cut =
             from.checked_add(length).and_then(|end| bytes.get(usize::try_from(from).ok()?..usize::try_from(end).ok()?));

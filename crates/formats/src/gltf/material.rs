@@ -4,11 +4,11 @@
 //! specular-glossiness extension's diffuse colour stands in where there is no metallic-roughness one. Opacity counts only
 //! where the material says so (`alphaMode`). Only materials that some surface uses are kept.
 
-use serde_json::Value;
+use gltf::json::{Value, material::AlphaMode, texture::Info, validation::Checked};
 
 use super::{
     container::Source,
-    json::{bad, extension, index, list, numbers, text},
+    document::{bad, numbers, whole},
 };
 use crate::{
     Image, Material, ReadError,
@@ -20,7 +20,7 @@ use crate::{
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvUse {
     /// The number of the `TEXCOORD` attribute.
-    pub set: u64,
+    pub set: u32,
     /// Offset, rotation in radians, scale.
     pub transform: Option<([f64; 2], f64, [f64; 2])>,
 }
@@ -35,16 +35,12 @@ pub(super) struct Materials<'s> {
     pub pictures: Vec<Image>,
 }
 
-/// Properties that change how a surface looks and that Limn does not show. The metallic and roughness factors are not
-/// counted: every material has them, written or not.
-const UNUSED: [&str; 4] = ["normalTexture", "occlusionTexture", "emissiveTexture", "emissiveFactor"];
-
 impl<'s> Materials<'s> {
     pub fn new(source: &'s Source<'s>) -> Self {
         Materials {
             source,
-            known: vec![None; list(&source.root, "materials").len()],
-            images: vec![None; list(&source.root, "images").len()],
+            known: vec![None; source.document.materials.len()],
+            images: vec![None; source.document.images.len()],
             out: Vec::new(),
             pictures: Vec::new(),
         }
@@ -55,97 +51,69 @@ impl<'s> Materials<'s> {
         if let Some(Some(known)) = self.known.get(number) {
             return Ok(*known);
         }
-        let place = format_args!("materials[{number}]");
-        let Some(value) = list(&self.source.root, "materials").get(number) else {
-            return Err(bad(place, "there is no such material"));
+        let material = self.source.document.materials.get(number)?;
+        let json = &material.json;
+        let diffuse = json.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
+        let metal = &json.pbr_metallic_roughness;
+        let (color, picture) = match diffuse {
+            Some(diffuse) => (diffuse.diffuse_factor.0, &diffuse.diffuse_texture),
+            None => (metal.base_color_factor.0, &metal.base_color_texture),
         };
-        let metal = value.get("pbrMetallicRoughness");
-        let diffuse = extension(value, "KHR_materials_pbrSpecularGlossiness");
-        let (base, factor, picture) = match (metal, diffuse) {
-            (_, Some(diffuse))
-                if metal.is_none_or(|m| m.get("baseColorTexture").is_none() && m.get("baseColorFactor").is_none()) =>
-            {
-                (Some(diffuse), "diffuseFactor", "diffuseTexture")
-            }
-            (base, _) => (base, "baseColorFactor", "baseColorTexture"),
-        };
-        let mut material = Material {
-            name: text(value, "name").unwrap_or_default().to_owned(),
-            double_sided: value.get("doubleSided").and_then(Value::as_bool).unwrap_or(false),
-            ..Material::default()
-        };
-        let mut uv = UvUse { set: 0, transform: None };
-        if let Some(base) = base {
-            if let Some(color) = numbers::<4>(base, factor, place)? {
-                material.base_color = color.map(|c| c.clamp(0.0, 1.0) as f32);
-            }
-            if let Some(info) = base.get(picture) {
-                (material.texture, uv) = self.texture(info, number, warnings)?;
-            }
+        let mut base_color = color.map(|c| c.clamp(0.0, 1.0));
+        if let (Checked::Valid(AlphaMode::Opaque), [_, _, _, a]) = (json.alpha_mode, &mut base_color) {
+            *a = 1.0;
         }
-        if matches!(text(value, "alphaMode"), None | Some("OPAQUE")) {
-            let [r, g, b, _] = material.base_color;
-            material.base_color = [r, g, b, 1.0];
-        }
-        self.count_unused(value, metal, warnings);
+        let (texture, uv) = match picture {
+            Some(info) => self.texture(info, number, warnings)?,
+            None => (None, UvUse { set: 0, transform: None }),
+        };
+        let name = json.name.clone().unwrap_or_default();
+        warnings.add(WarningKind::MaterialSettings, material.unused, || None);
         let result = (self.out.len() as u32, uv);
-        self.out.push(material);
+        self.out.push(Material { name, base_color, texture, double_sided: json.double_sided });
         if let Some(slot) = self.known.get_mut(number) {
             *slot = Some(result);
         }
         Ok(result)
     }
 
-    fn count_unused(&self, value: &Value, metal: Option<&Value>, warnings: &mut Warnings) {
-        let plain = UNUSED.iter().filter(|key| value.get(**key).is_some()).count();
-        let metallic = usize::from(metal.is_some_and(|m| m.get("metallicRoughnessTexture").is_some()));
-        let extensions = value.get("extensions").and_then(Value::as_object).map_or(0, |e| {
-            e.keys().filter(|k| k.starts_with("KHR_materials_") && *k != "KHR_materials_pbrSpecularGlossiness").count()
-        });
-        warnings.add(WarningKind::MaterialSettings, (plain + metallic + extensions) as u64, || None);
-    }
-
     fn texture(
         &mut self,
-        info: &Value,
+        info: &Info,
         material: usize,
         warnings: &mut Warnings,
     ) -> Result<(Option<u32>, UvUse), ReadError> {
         let place = format_args!("materials[{material}]");
-        let textures = list(&self.source.root, "textures");
-        let mut uv = UvUse { set: info.get("texCoord").and_then(Value::as_u64).unwrap_or(0), transform: None };
-        if let Some(t) = extension(info, "KHR_texture_transform") {
-            let offset = numbers(t, "offset", place)?.unwrap_or([0.0; 2]);
-            let scale = numbers(t, "scale", place)?.unwrap_or([1.0; 2]);
+        let document = &self.source.document;
+        let mut uv = UvUse { set: info.tex_coord, transform: None };
+        if let Some(t) = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform")) {
+            let wrong = |problem| bad(place, problem);
+            let offset = numbers(t, "offset").map_err(wrong)?.unwrap_or([0.0; 2]);
+            let scale = numbers(t, "scale").map_err(wrong)?.unwrap_or([1.0; 2]);
             let rotation = t.get("rotation").and_then(Value::as_f64).unwrap_or(0.0);
-            uv.set = t.get("texCoord").and_then(Value::as_u64).unwrap_or(uv.set);
+            uv.set = t.get("texCoord").and_then(whole).and_then(|set| u32::try_from(set).ok()).unwrap_or(uv.set);
             if (offset, rotation, scale) != ([0.0; 2], 0.0, [1.0; 2]) {
                 uv.transform = Some((offset, rotation, scale));
             }
         }
-        let Some(number) = index(info, "index", textures.len(), place)? else {
-            return Err(bad(place, "its picture names no texture"));
-        };
-        let Some(texture) = textures.get(number) else { return Ok((None, uv)) };
-        let images = list(&self.source.root, "images").len();
+        let number = document.textures.check(info.index.value(), "index", place)?;
+        let texture = document.textures.get(number)?;
         let place = format_args!("textures[{number}]");
         // Formats that browsers decode as well as PNG and JPEG.
-        let newer = extension(texture, "EXT_texture_webp").or(extension(texture, "EXT_texture_avif"));
-        let image = match newer {
-            Some(newer) => index(newer, "source", images, place)?,
-            None => None,
-        };
-        let image = match image {
-            Some(image) => Some(image),
-            None => index(texture, "source", images, place)?,
-        };
-        match image {
-            Some(image) => Ok((self.image(image, warnings)?, uv)),
-            None => {
+        let newer = texture.extensions.as_ref().and_then(|e| {
+            ["EXT_texture_webp", "EXT_texture_avif"].iter().find_map(|name| whole(e.others.get(*name)?.get("source")?))
+        });
+        let image = match (newer, texture.source.value()) {
+            (Some(newer), _) => usize::try_from(newer).unwrap_or(usize::MAX),
+            // This is how the crate says that there is none.
+            (None, none) if none == u32::MAX as usize => {
                 warnings.name(WarningKind::TextureFormat, &format!("textures[{number}]"));
-                Ok((None, uv))
+                return Ok((None, uv));
             }
-        }
+            (None, source) => source,
+        };
+        let image = document.images.check(image, "source", place)?;
+        Ok((self.image(image, warnings)?, uv))
     }
 
     fn image(&mut self, number: usize, warnings: &mut Warnings) -> Result<Option<u32>, ReadError> {
@@ -162,11 +130,14 @@ impl<'s> Materials<'s> {
     fn load_image(&mut self, number: usize, warnings: &mut Warnings) -> Result<Option<u32>, ReadError> {
         let place = format_args!("images[{number}]");
         let source = self.source;
-        let Some(image) = list(&source.root, "images").get(number) else { return Ok(None) };
-        let views = list(&source.root, "bufferViews").len();
-        let mut name = text(image, "name").unwrap_or_default().to_owned();
+        let image = source.document.images.get(number)?;
+        let mut name = image.name.clone().unwrap_or_default();
+        let view = match image.buffer_view {
+            Some(view) => Some(source.document.views.check(view.value(), "bufferView", place)?),
+            None => None,
+        };
         let decoded;
-        let bytes = match (index(image, "bufferView", views, place)?, text(image, "uri")) {
+        let bytes = match (view, image.uri.as_deref()) {
             (Some(view), _) => match source.view(view) {
                 Ok((bytes, _)) => bytes,
                 // A picture is no reason to refuse the shape.

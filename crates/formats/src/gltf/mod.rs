@@ -1,7 +1,7 @@
 //! Reading glTF 2.0: `.gltf` with its siblings or `data:` URIs, and `.glb`.
 //!
 //! ```text
-//!   container ─► JSON value ─► scene: nodes, transforms ─► primitives ─► accessors ─► soup
+//!   container ─► document ─► scene: nodes, transforms ─► primitives ─► accessors ─► soup
 //! ```
 //!
 //! The surfaces of all nodes of the scene are put one after another: primitives in the order of the nodes, each with the
@@ -9,14 +9,14 @@
 //! positions too. A node is a group, and a part that is welded by itself. Faces of a mirrored node are turned round, so that they keep facing outwards.
 //! glTF only knows triangles; where the FB_ngon_encoding extension is present they are read as the polygons they came from.
 //!
-//! The file is read as plain JSON values with our own checks instead of through typed structures: the accessor checks are
-//! needed anyway (every offset, stride and count is the file's word only), messages can name the element, and generated
-//! deserialisers for a format of which a few dozen properties matter would weigh a quarter of the whole page.
+//! The document is read with the `gltf` crate's typed structures, element by element (`document.rs`); containers and accessors
+//! with our own checks, since every offset, stride and count is the file's word only, and the crate's readers believe it: they
+//! panic on accessors without a buffer view and on broken ones. It refuses binary files with chunks that it does not know.
 //! Source: glTF 2.0 specification, Khronos 2021. Limit: what needs a decoder (Draco, meshopt) is refused by name.
 
 mod accessor;
 mod container;
-mod json;
+mod document;
 mod material;
 mod polygons;
 mod scene;
@@ -30,7 +30,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use self::{
     container::Source,
-    json::{bad, extension, list, text},
+    document::{Document, bad, extension, list, shown},
 };
 use crate::{
     Files, Limits, Model, ReadError, Tags, Warning,
@@ -86,8 +86,8 @@ pub(crate) fn read(
 /// The files that a glTF file refers to; empty if it does not parse.
 pub(crate) fn references(bytes: &[u8]) -> Vec<String> {
     let Ok(source) = Source::open("", bytes, &(), &Limits::default()) else { return Vec::new() };
-    let lists = ["buffers", "images"].iter().flat_map(|key| list(&source.root, key));
-    let uris = lists.filter_map(|value| text(value, "uri"));
+    let Document { buffers, images, .. } = &source.document;
+    let uris = buffers.good().filter_map(|b| b.uri.as_deref()).chain(images.good().filter_map(|i| i.uri.as_deref()));
     uris.filter(|uri| !uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"))).map(str::to_owned).collect()
 }
 
@@ -98,12 +98,14 @@ pub(crate) fn is_gltf(bytes: &[u8]) -> bool {
 }
 
 fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
-    let asset = source.root.get("asset");
+    let asset = source.document.rest.get("asset");
     let version = asset.and_then(|a| a.get("version"));
     // Some glTF 1.0 writers gave a number.
-    let version = version.map(|v| v.as_str().map_or_else(|| json::shown(v), str::to_owned));
+    let version = version.map(|v| v.as_str().map_or_else(|| shown(v), str::to_owned));
     // In glTF 1.0 the lists were maps.
-    let old = ["meshes", "nodes", "accessors"].iter().any(|key| source.root.get(*key).is_some_and(|v| v.is_object()));
+    let old = ["meshes", "nodes", "accessors"]
+        .iter()
+        .any(|key| source.document.rest.get(*key).is_some_and(|v| v.is_object()));
     let refuse = |version: String| Err(ReadError::Version { file: source.file.to_owned(), version: short(&version) });
     match version.filter(|v| !v.is_empty()) {
         _ if old => refuse("1.0".to_owned()),
@@ -111,7 +113,7 @@ fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
             Err(bad(format_args!("asset"), format!("{} does not state a glTF version, so it is not glTF", source.file)))
         }
         Some(version) => {
-            let needed = asset.and_then(|a| text(a, "minVersion")).unwrap_or("2.0");
+            let needed = asset.and_then(|a| a.get("minVersion")).and_then(|v| v.as_str()).unwrap_or("2.0");
             match version.split('.').next() {
                 Some("2") if needed == "2.0" => Ok(()),
                 Some("2") => refuse(needed.to_owned()),
@@ -122,7 +124,7 @@ fn check_version(source: &Source<'_>) -> Result<(), ReadError> {
 }
 
 fn check_required(source: &Source<'_>) -> Result<(), ReadError> {
-    for name in list(&source.root, "extensionsRequired").iter().filter_map(|v| v.as_str()) {
+    for name in list(&source.document.rest, "extensionsRequired").iter().filter_map(|v| v.as_str()) {
         let advice = match name {
             "KHR_draco_mesh_compression" => "export the model without Draco compression",
             "EXT_meshopt_compression" | "KHR_meshopt_compression" => "export the model without meshopt compression",
@@ -136,7 +138,7 @@ fn check_required(source: &Source<'_>) -> Result<(), ReadError> {
 
 /// Warns of what is in the file and has no place in Limn.
 fn count_unused(source: &Source<'_>, warnings: &mut Warnings) {
-    let root = &source.root;
+    let root = &source.document.rest;
     let mut count = |kind, number: usize| warnings.add(kind, number as u64, || None);
     count(WarningKind::Skins, list(root, "skins").len());
     count(WarningKind::Animations, list(root, "animations").len());

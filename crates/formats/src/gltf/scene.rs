@@ -6,13 +6,18 @@
 
 use super::{
     accessor::Accessor,
-    json::{index, shown, whole},
+    document::{Primitive, whole},
     material::{Materials, UvUse},
     polygons::{Mode, polygons},
     transform::Transform,
     *,
 };
-use serde_json::Value;
+use gltf::json::{
+    Index,
+    mesh::{Mode as Kind, Semantic},
+    scene::Node,
+    validation::Checked,
+};
 
 /// Identifies positions already built: transform, position, colour and texture accessors, and the picture's transform.
 type BaseKey = ([[u64; 3]; 4], usize, Option<usize>, Option<(usize, [u64; 5])>);
@@ -58,15 +63,15 @@ impl<'s> Builder<'s> {
 
     /// Builds all that the scene shows: the file's scene, else its first, else all root nodes, else all meshes.
     pub fn scene(&mut self) -> Result<(), ReadError> {
-        let root = &self.source.root;
-        let (nodes, scenes, meshes) = (list(root, "nodes"), list(root, "scenes"), list(root, "meshes"));
-        let scene = index(root, "scene", scenes.len(), format_args!("The file"))?.unwrap_or(0);
-        let roots = match scenes.get(scene) {
-            Some(value) => children(value, "nodes", nodes.len(), format_args!("scenes[{scene}]"))?,
+        let source = self.source;
+        let Document { nodes, meshes, scenes, .. } = &source.document;
+        let roots = match source.document.scene()? {
+            Some(scene) => self.children(&scenes.get(scene)?.nodes, "nodes", format_args!("scenes[{scene}]"))?,
             None => {
                 let mut is_child = vec![false; nodes.len()];
-                for (n, node) in nodes.iter().enumerate() {
-                    for child in children(node, "children", nodes.len(), format_args!("nodes[{n}]"))? {
+                for n in 0..nodes.len() {
+                    let list = nodes.get(n)?.json.children.as_deref().unwrap_or_default();
+                    for child in self.children(list, "children", format_args!("nodes[{n}]"))? {
                         if let Some(flag) = is_child.get_mut(child) {
                             *flag = true;
                         }
@@ -75,7 +80,7 @@ impl<'s> Builder<'s> {
                 (0..nodes.len()).filter(|n| is_child.get(*n) == Some(&false)).collect()
             }
         };
-        if nodes.is_empty() {
+        if nodes.len() == 0 {
             for mesh in 0..meshes.len() {
                 self.mesh(mesh, &[Transform::IDENTITY], None)?;
             }
@@ -84,21 +89,23 @@ impl<'s> Builder<'s> {
         let mut stack: Vec<(usize, Transform)> = roots.into_iter().rev().map(|n| (n, Transform::IDENTITY)).collect();
         while let Some((n, parent)) = stack.pop() {
             let place = format_args!("nodes[{n}]");
-            let Some(node) = nodes.get(n) else { continue };
             if visited.get(n) != Some(&false) {
                 return Err(bad(place, "it is reached twice, but the nodes of a scene must form a tree"));
             }
             if let Some(flag) = visited.get_mut(n) {
                 *flag = true;
             }
-            let global = parent.after(&Transform::of_node(node, n)?);
-            if let Some(mesh) = index(node, "mesh", meshes.len(), place)? {
+            let node = nodes.get(n)?;
+            let global = parent.after(&node.local);
+            let node = &node.json;
+            if let Some(mesh) = node.mesh {
+                let mesh = meshes.check(mesh.value(), "mesh", place)?;
                 // A skin's joints place its mesh, not the node.
-                let global = if node.get("skin").is_some() { Transform::IDENTITY } else { global };
+                let global = if node.skin.is_some() { Transform::IDENTITY } else { global };
                 let instances = self.instances(node, n, &global)?;
-                self.mesh(mesh, &instances, text(node, "name"))?;
+                self.mesh(mesh, &instances, node.name.as_deref())?;
             }
-            let children = children(node, "children", nodes.len(), place)?;
+            let children = self.children(node.children.as_deref().unwrap_or_default(), "children", place)?;
             stack.extend(children.into_iter().rev().map(|c| (c, global)));
         }
         let hidden = meshes.len() - self.meshes_shown.len();
@@ -106,16 +113,33 @@ impl<'s> Builder<'s> {
         Ok(())
     }
 
+    /// A list of node numbers.
+    fn children<T>(
+        &self,
+        list: &[Index<T>],
+        key: &str,
+        place: std::fmt::Arguments<'_>,
+    ) -> Result<Vec<usize>, ReadError> {
+        let count = self.source.document.nodes.len();
+        list.iter()
+            .map(|child| match child.value() {
+                number if number < count => Ok(number),
+                number => Err(bad(place, format!("its {key} name node {number}, but the file has only {count}"))),
+            })
+            .collect()
+    }
+
     /// The transforms of a node's instances; one if it has no instancing extension.
-    fn instances(&mut self, node: &Value, n: usize, global: &Transform) -> Result<Vec<Transform>, ReadError> {
-        let Some(attributes) = extension(node, "EXT_mesh_gpu_instancing").and_then(|e| e.get("attributes")) else {
-            return Ok(vec![*global]);
-        };
-        let accessors = list(&self.source.root, "accessors").len();
+    fn instances(&mut self, node: &Node, n: usize, global: &Transform) -> Result<Vec<Transform>, ReadError> {
+        let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing"));
+        let Some(attributes) = extension.and_then(|e| e.get("attributes")) else { return Ok(vec![*global]) };
         let place = format_args!("nodes[{n}]");
         let mut count = None;
         let mut get = |key: &str, rest: [f32; 4]| -> Result<Vec<[f32; 4]>, ReadError> {
-            let Some(number) = index(attributes, key, accessors, place)? else { return Ok(vec![rest]) };
+            let Some(number) = attributes.get(key) else { return Ok(vec![rest]) };
+            let number = whole(number).and_then(|n| usize::try_from(n).ok());
+            let number = number.ok_or_else(|| bad(place, format!("its {key} is not a whole number")))?;
+            let number = self.source.document.accessors.check(number, key, place)?;
             let accessor = Accessor::new(self.source, number)?;
             if *count.get_or_insert(accessor.count) != accessor.count {
                 return Err(bad(place, "its instances have unequal numbers of attributes"));
@@ -139,56 +163,66 @@ impl<'s> Builder<'s> {
     fn mesh(&mut self, number: usize, instances: &[Transform], name: Option<&str>) -> Result<(), ReadError> {
         self.meshes_shown.insert(number);
         let source = self.source;
-        let Some(mesh) = list(&source.root, "meshes").get(number) else { return Ok(()) };
+        let mesh = source.document.meshes.get(number)?;
         let group = self.groups.len() as u32;
         let faces = self.soup.face_count();
         for transform in instances {
             self.parts += 1;
-            for (p, primitive) in list(mesh, "primitives").iter().enumerate() {
-                self.primitive(primitive, (number, p), transform)?;
+            for (p, primitive) in mesh.primitives.iter().enumerate() {
+                let place = format_args!("meshes[{number}].primitives[{p}]");
+                let primitive = primitive.as_ref().map_err(|problem| bad(place, problem))?;
+                self.primitive(primitive, place, transform)?;
             }
         }
         if self.soup.face_count() > faces {
-            let name = name.or(text(mesh, "name")).filter(|n| !n.is_empty());
+            let name = name.or(mesh.name.as_deref()).filter(|n| !n.is_empty());
             self.groups.push(name.map_or_else(|| format!("mesh {number}"), str::to_owned));
             self.soup.face_groups.resize(self.soup.face_count(), group);
         }
         Ok(())
     }
 
-    fn primitive(&mut self, value: &Value, (m, p): (usize, usize), transform: &Transform) -> Result<(), ReadError> {
-        let place = format_args!("meshes[{m}].primitives[{p}]");
-        let encoded = extension(value, "FB_ngon_encoding").is_some();
-        let mode = match whole(value, "mode", place)?.unwrap_or(4) {
-            0..=3 => {
+    fn primitive(
+        &mut self,
+        primitive: &Primitive,
+        place: std::fmt::Arguments<'_>,
+        transform: &Transform,
+    ) -> Result<(), ReadError> {
+        let json = &primitive.json;
+        let extends = |name: &str| json.extensions.as_ref().is_some_and(|e| e.others.contains_key(name));
+        let mode = match json.mode {
+            Checked::Valid(Kind::Points | Kind::Lines | Kind::LineLoop | Kind::LineStrip) => {
                 self.warnings.add(WarningKind::PointOrLinePrimitives, 1, || Some(format!("first {place}")));
                 return Ok(());
             }
-            4 if encoded => Mode::Polygons,
-            4 => Mode::List,
-            5 => Mode::Strip,
-            6 => Mode::Fan,
-            other => return Err(bad(place, format!("its mode {other} is none that glTF has"))),
+            Checked::Valid(Kind::Triangles) if extends("FB_ngon_encoding") => Mode::Polygons,
+            Checked::Valid(Kind::Triangles) => Mode::List,
+            Checked::Valid(Kind::TriangleStrip) => Mode::Strip,
+            Checked::Valid(Kind::TriangleFan) => Mode::Fan,
+            Checked::Invalid => return Err(bad(place, "its mode is none that glTF has")),
         };
         let source = self.source;
-        let root = &source.root;
-        let accessors = list(root, "accessors");
-        let attributes = value.get("attributes").unwrap_or(&Value::Null);
-        let Some(positions) = index(attributes, "POSITION", accessors.len(), place)? else {
+        let Document { accessors, materials, .. } = &source.document;
+        let Some(positions) = json.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             self.warnings.add(WarningKind::NoPositions, 1, || Some(format!("first {place}")));
             return Ok(());
         };
-        let compressed = extension(value, "KHR_draco_mesh_compression").is_some();
-        if compressed && accessors.get(positions).is_some_and(|a| a.get("bufferView").is_none()) {
+        let positions = accessors.check(positions.value(), "POSITION", place)?;
+        let compressed = extends("KHR_draco_mesh_compression");
+        if compressed && accessors.get(positions)?.buffer_view.is_none() {
             let name = "KHR_draco_mesh_compression".to_owned();
             return Err(ReadError::Extension { name, advice: "export the model without Draco compression" });
         }
-        let (material, uv_use) = match index(value, "material", list(root, "materials").len(), place)? {
-            Some(number) => self.materials.get(number, &mut self.warnings)?,
+        let (material, uv_use) = match json.material {
+            Some(number) => {
+                let number = materials.check(number.value(), "material", place)?;
+                self.materials.get(number, &mut self.warnings)?
+            }
             None => (NONE, UvUse { set: 0, transform: None }),
         };
-        let indices = match index(value, "indices", accessors.len(), place)? {
+        let indices = match json.indices {
             Some(number) => {
+                let number = accessors.check(number.value(), "indices", place)?;
                 let accessor = Accessor::new(source, number)?;
                 // The list itself, and the corners with their texture coordinates made of it.
                 source.budget.borrow_mut().spend("The model", accessor.count as u64, 4)?;
@@ -197,8 +231,8 @@ impl<'s> Builder<'s> {
             None => None,
         };
         let texture = format!("TEXCOORD_{}", uv_use.set);
-        self.count_attributes(value, attributes, &texture);
-        let (base, count) = self.vertices(attributes, (positions, &texture, uv_use), transform, place)?;
+        self.count_attributes(primitive, &texture);
+        let (base, count) = self.vertices(primitive, (positions, &texture, uv_use), transform, place)?;
         let indices = match indices {
             Some((number, indices)) => {
                 if let Some(at) = indices.iter().position(|i| *i as usize >= count) {
@@ -269,10 +303,9 @@ impl<'s> Builder<'s> {
         Ok(())
     }
 
-    fn count_attributes(&mut self, primitive: &Value, attributes: &Value, texture: &str) {
-        let targets = list(primitive, "targets").len();
-        self.warnings.add(WarningKind::MorphTargets, targets as u64, || None);
-        for key in attributes.as_object().into_iter().flat_map(|a| a.keys()) {
+    fn count_attributes(&mut self, primitive: &Primitive, texture: &str) {
+        self.warnings.add(WarningKind::MorphTargets, primitive.targets as u64, || None);
+        for key in &primitive.names {
             let skin = key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_");
             if !skin && !matches!(key.as_str(), "POSITION" | "NORMAL" | "COLOR_0") && key != texture {
                 self.warnings.add(WarningKind::Attributes, 1, || Some(format!("such as {}", short(key))));
@@ -283,37 +316,38 @@ impl<'s> Builder<'s> {
     /// The base of a primitive's vertices, and how many there are; builds them unless they are there already.
     fn vertices(
         &mut self,
-        attributes: &Value,
+        primitive: &Primitive,
         (positions, texture, uv_use): (usize, &str, UvUse),
         transform: &Transform,
         place: std::fmt::Arguments<'_>,
     ) -> Result<(Base, usize), ReadError> {
         let source = self.source;
-        let accessors = list(&source.root, "accessors").len();
+        let attributes = &primitive.json.attributes;
         let accessor = Accessor::new(source, positions)?;
         let count = accessor.count;
         if accessor.width != 3 {
             return Err(bad(format_args!("accessors[{positions}]"), "positions must have three components"));
         }
-        let mut optional =
-            |key: &str, widths: std::ops::RangeInclusive<usize>| -> Result<Option<(usize, Accessor<'s>)>, ReadError> {
-                let Some(number) = attributes.get(key) else { return Ok(None) };
+        let mut optional = |semantic, key: &str, widths: std::ops::RangeInclusive<usize>| {
+            let broken = primitive.broken.iter().find(|(name, _)| name == key);
+            let (shown, found) = match (attributes.get(&Checked::Valid(semantic)), broken) {
                 // A colour or texture coordinate that cannot be read is no reason to refuse the shape; a missing file is.
-                let found = index(attributes, key, accessors, place).and_then(|n| match n {
-                    Some(n) => Accessor::new(source, n).map(|a| Some((n, a))),
-                    None => Ok(None),
-                });
-                match found {
-                    Ok(Some((n, a))) if a.count == count && widths.contains(&a.width) => return Ok(Some((n, a))),
+                (Some(number), _) => match Accessor::new(source, number.value()) {
                     Err(error @ (ReadError::MissingFile { .. } | ReadError::TooBig { .. })) => return Err(error),
-                    _ => self.warnings.add(WarningKind::AttributeBroken, 1, || {
-                        Some(format!("first {key} {} of {place}", shown(number)))
-                    }),
-                }
-                Ok(None)
+                    found => (number.to_string(), found.ok().map(|a| (number.value(), a))),
+                },
+                (None, Some((_, shown))) => (shown.clone(), None),
+                (None, None) => return Ok(None),
             };
-        let uv = optional(texture, 2..=2)?;
-        let color = optional("COLOR_0", 3..=4)?;
+            let found = found.filter(|(_, a)| a.count == count && widths.contains(&a.width));
+            if found.is_none() {
+                let place = || Some(format!("first {key} {shown} of {place}"));
+                self.warnings.add(WarningKind::AttributeBroken, 1, place);
+            }
+            Ok(found)
+        };
+        let uv = optional(Semantic::TexCoords(uv_use.set), texture, 2..=2)?;
+        let color = optional(Semantic::Colors(0), "COLOR_0", 3..=4)?;
         let turn = uv_use.transform.map_or([0; 5], |([a, b], r, [c, d])| [a, b, r, c, d].map(f64::to_bits));
         let key = (transform.key(), positions, color.as_ref().map(|c| c.0), uv.as_ref().map(|u| (u.0, turn)));
         if let Some(base) = self.bases.get(&key) {
@@ -336,7 +370,7 @@ impl<'s> Builder<'s> {
         if let Some((_, accessor)) = &uv {
             self.texture_coordinates(accessor, uv_use)?;
         }
-        if attributes.get("NORMAL").is_some() {
+        if primitive.names.iter().any(|name| name == "NORMAL") {
             self.warnings.add(WarningKind::Normals, count as u64, || None);
         }
         let base = Base { position: start as u32, uv: uv.map(|_| uv_start) };
@@ -409,7 +443,7 @@ impl<'s> Builder<'s> {
     pub fn finish(mut self) -> Result<(Model, Vec<Warning>), ReadError> {
         let file = self.source.file;
         if self.soup.face_count() == 0 {
-            let meshes = list(&self.source.root, "meshes").len();
+            let meshes = self.source.document.meshes.len();
             let found = match (meshes, self.meshes_shown.len()) {
                 (0, _) => "it has no meshes".to_owned(),
                 (_, 0) => "no node of its scene shows a mesh".to_owned(),
@@ -447,19 +481,4 @@ impl<'s> Builder<'s> {
         };
         Ok((model, self.warnings.finish()))
     }
-}
-
-/// A list of node numbers.
-fn children(value: &Value, key: &str, count: usize, place: std::fmt::Arguments<'_>) -> Result<Vec<usize>, ReadError> {
-    list(value, key)
-        .iter()
-        .map(|child| {
-            // Some writers print 3.0.
-            let number =
-                child.as_f64().filter(|n| *n >= 0.0 && n.trunc() == *n && *n < count as f64).map(|n| n as usize);
-            number.ok_or_else(|| {
-                bad(place, format!("its {key} name node {}, but the file has only {count}", shown(child)))
-            })
-        })
-        .collect()
 }

@@ -4,10 +4,9 @@
 //! path from the root is applied to positions once, so nothing is rounded twice; where it is exactly the identity, the
 //! positions' bits stay as they are.
 
-use serde_json::Value;
+use gltf::json::Value;
 
-use super::json::{bad, numbers};
-use crate::ReadError;
+use super::document::numbers;
 
 /// An affine map: three columns and a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,18 +18,17 @@ impl Transform {
     pub const IDENTITY: Transform = Transform { columns: [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [0., 0., 0.]] };
 
     /// The transform of a node relative to its parent.
-    pub fn of_node(node: &Value, number: usize) -> Result<Self, ReadError> {
-        let place = format_args!("nodes[{number}]");
-        if let Some(m) = numbers::<16>(node, "matrix", place)? {
+    pub fn of_node(node: &Value) -> Result<Self, String> {
+        if let Some(m) = numbers::<16>(node, "matrix")? {
             let [a, b, c, e, f, g, h, i, j, k, l, n, x, y, z, w] = m;
             if [e, i, n] != [0.0; 3] || w != 1.0 {
-                return Err(bad(place, "its matrix is not affine: the last row must be 0 0 0 1"));
+                return Err("its matrix is not affine: the last row must be 0 0 0 1".to_owned());
             }
             return Ok(Transform { columns: [[a, b, c], [f, g, h], [j, k, l], [x, y, z]] });
         }
-        let translation = numbers(node, "translation", place)?.unwrap_or([0.0; 3]);
-        let rotation = numbers(node, "rotation", place)?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-        let scale = numbers(node, "scale", place)?.unwrap_or([1.0; 3]);
+        let translation = numbers(node, "translation")?.unwrap_or([0.0; 3]);
+        let rotation = numbers(node, "rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        let scale = numbers(node, "scale")?.unwrap_or([1.0; 3]);
         Ok(Self::from_parts(translation, rotation, scale))
     }
 
