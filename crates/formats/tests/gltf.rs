@@ -250,8 +250,6 @@ fn instancing_extension() {
 #[test]
 fn without_nodes_or_scenes() {
     let mut file = File::two_triangles().with(json!({"nodes": [], "scenes": [], "scene": null}));
-    assert_eq!(file.quiet().soup.positions, SQUARE);
-    file.more["scene"] = 0.5.into();
     assert_eq!(file.fails(), "The file: its scene is not a whole number.");
     file.more["scene"] = 0.into();
     assert_eq!(file.fails(), "The file: its scene is 0, but the file has only 0.");
@@ -486,6 +484,118 @@ fn broken_extras_do_not_cost_the_shape() {
             )]
         );
     }
+}
+
+#[test]
+fn small_offences_do_not_cost_the_shape() {
+    let mut file = File::two_triangles();
+    file.accessors[0]["name"] = 7.into();
+    file.accessors[0]["count"] = 4.0.into();
+    file.accessors[0]["extensions"] = json!([]);
+    file.accessors[0]["max"] = "none".into();
+    file.views[1]["target"] = "elements".into();
+    file.primitives[0]["indices"] = 1.0.into();
+    file.primitives[0]["extras"] = json!(["anything"]);
+    // Not needed, so what is wrong with them does not matter.
+    file.accessors.push(json!({"count": "many"}));
+    file.views.push(json!("a view"));
+    let pointer = json!({"channels": [{"sampler": 0, "target": {"path": "pointer"}}], "samplers": []});
+    let file = file.with(json!({
+        "scenes": [{"nodes": [0.0]}, {"name": "empty"}], "scene": 0.0,
+        "nodes": [{"mesh": 0.0, "skin": -1, "camera": "front", "weights": {}}, {"mesh": 99}],
+        "materials": [{"alphaMode": 5}], "cameras": [{"type": "none"}], "animations": [pointer], "samplers": [[]],
+        "extensions": [], "extras": 1,
+    }));
+    let (model, warnings) = file.read();
+    assert_eq!(
+        (model.soup.positions.as_slice(), model.soup.corners.as_slice()),
+        (&SQUARE[..], &[0, 1, 2, 0, 2, 3][..])
+    );
+    assert_eq!(warnings, ["1 animation is not used.", "1 camera is not used."]);
+}
+
+#[test]
+fn numbers_past_32_bits_are_not_cut_off() {
+    let past = |n: u64| json!((1u64 << 32) + n);
+    let change = |edit: &dyn Fn(&mut File)| {
+        let mut file = File::two_triangles();
+        edit(&mut file);
+        file.fails()
+    };
+    assert_eq!(
+        change(&|f| f.accessors[0]["bufferView"] = past(0)),
+        "accessors[0]: its bufferView is 4294967296, which is more than 32 bits can number."
+    );
+    assert_eq!(
+        change(&|f| f.primitives[0]["attributes"]["POSITION"] = past(0)),
+        "meshes[0].primitives[0]: its POSITION is 4294967296, which is more than 32 bits can number."
+    );
+    assert_eq!(
+        change(&|f| f.primitives[0]["mode"] = past(4)),
+        "meshes[0].primitives[0]: its mode is 4294967300, which is more than 32 bits can number."
+    );
+    assert_eq!(
+        change(&|f| f.more = json!({"nodes": [{"mesh": past(0)}]})),
+        "nodes[0]: its mesh is 4294967296, which is more than 32 bits can number."
+    );
+    // Byte counts may be as large.
+    assert_eq!(
+        change(&|f| f.views[0]["byteLength"] = past(48)),
+        "bufferViews[0]: its 4294967344 bytes from byte 0 lie outside buffer 0, which has 60."
+    );
+}
+
+#[test]
+fn attribute_names_are_taken_literally() {
+    let mut file = File::two_triangles();
+    for name in ["TEXCOORD_00", "TEXCOORD_+0", "COLOR_00"] {
+        file.primitives[0]["attributes"][name] = 0.into();
+    }
+    let (model, warnings) = file.read();
+    assert!(model.soup.uvs.is_empty() && model.soup.colors.is_empty());
+    assert_eq!(
+        warnings,
+        [
+            "3 vertex attributes other than position, colour and first texture coordinate (such as COLOR_00) are not used."
+        ]
+    );
+}
+
+#[test]
+fn transforms_keep_64_bits() {
+    // Seen from the middle of the Earth; in 32 bits the step is half a unit there.
+    let file = File::two_triangles().with(json!({
+        "nodes": [{"children": [1], "translation": [6378137.3, 0, 0]}, {"mesh": 0, "translation": [-6378137.2, 0, 0]}],
+    }));
+    let [x, ..] = file.quiet().soup.positions[0];
+    assert!((x - 0.1).abs() < 1e-6, "{x}");
+}
+
+#[test]
+fn broken_elements_are_named() {
+    let change = |edit: &dyn Fn(&mut File)| {
+        let mut file = File::two_triangles();
+        edit(&mut file);
+        file.fails()
+    };
+    assert_eq!(change(&|f| f.accessors[0] = json!({})), "accessors[0]: it has no count.");
+    assert_eq!(change(&|f| f.accessors[0]["type"] = 3.into()), "accessors[0]: it has no type.");
+    assert_eq!(change(&|f| f.views[1] = json!([])), "bufferViews[1]: it has no buffer.");
+    assert_eq!(
+        change(&|f| f.accessors[1]["sparse"] = json!({"count": 1, "indices": {"bufferView": 0, "componentType": 5121}})),
+        "accessors[1]: it has no values."
+    );
+    assert_eq!(
+        change(&|f| f.primitives[0]["indices"] = json!({})),
+        "meshes[0].primitives[0]: its indices is not a whole number."
+    );
+    assert_eq!(
+        change(&|f| {
+            f.primitives[0]["material"] = 0.into();
+            f.more = json!({"materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0]}}]});
+        }),
+        "materials[0]: its baseColorFactor is not a list of 4 numbers."
+    );
 }
 
 #[test]

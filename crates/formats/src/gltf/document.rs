@@ -24,26 +24,14 @@ use crate::{
     error::{Budget, short},
 };
 
-/// Properties that Limn does not use in any element that it reads: broken ones are no reason to refuse a shape.
-const NOT_USED: [&str; 9] =
-    ["extras", "min", "max", "target", "weights", "camera", "sampler", "mimeType", "alphaCutoff"];
+/// Properties that Limn does not use in any element that it reads: broken ones are no reason to refuse a shape. What it uses
+/// of extensions is taken out before.
+const NOT_USED: [&str; 10] =
+    ["extras", "extensions", "min", "max", "target", "weights", "camera", "sampler", "mimeType", "alphaCutoff"];
 
 /// Properties that refer to an element of another list, or are numbers of the specification.
-const NUMBERS: [&str; 13] = [
-    "buffer",
-    "bufferView",
-    "componentType",
-    "indices",
-    "material",
-    "mesh",
-    "mode",
-    "skin",
-    "index",
-    "source",
-    "texCoord",
-    "children",
-    "nodes",
-];
+const NUMBERS: [&str; 9] =
+    ["buffer", "bufferView", "componentType", "index", "indices", "material", "mesh", "mode", "source"];
 
 /// Properties that count bytes or elements.
 const SIZES: [&str; 4] = ["byteLength", "byteOffset", "byteStride", "count"];
@@ -73,9 +61,9 @@ impl<T> Items<T> {
         budget: &mut Budget,
         read: impl Fn(Value) -> Result<T, String>,
     ) -> Result<Self, ReadError> {
-        let list = take(root, name);
+        let list = take_objects(root, name);
         budget.spend("The file's JSON", list.len() as u64, size_of::<Result<T, String>>() as u64)?;
-        Ok(Items { name, list: list.into_iter().map(read).collect() })
+        Ok(Items { name, list: list.map(read).collect() })
     }
 
     pub fn len(&self) -> usize {
@@ -106,10 +94,12 @@ impl<T> Items<T> {
     }
 }
 
-/// A node with its transform relative to its parent.
 pub(super) struct Node {
     pub json: json::Node,
+    /// Relative to the parent.
     pub local: Transform,
+    /// The attributes of the EXT_mesh_gpu_instancing extension.
+    pub instances: Option<Value>,
 }
 
 pub(super) struct Mesh {
@@ -125,14 +115,23 @@ pub(super) struct Primitive {
     /// Attributes that are not numbers, for a message.
     pub broken: Vec<(String, String)>,
     pub targets: usize,
+    /// Whether it has the FB_ngon_encoding extension.
+    pub polygons: bool,
+    /// Whether it has the KHR_draco_mesh_compression extension.
+    pub draco: bool,
 }
 
-/// A material's base colour: its metallic-roughness one, else the specular-glossiness extension.
+/// A material. Where the specular-glossiness extension stands in for a base colour, it has been put in its place.
 pub(super) struct Material {
     pub json: json::Material,
-    /// How many other settings there are.
+    /// What the KHR_texture_transform extension does to the base colour's picture.
+    pub transform: Option<UvTransform>,
+    /// How many settings there are other than the base colour.
     pub unused: u64,
 }
+
+/// Offset, rotation in radians, scale.
+pub(super) type UvTransform = ([f64; 2], f64, [f64; 2]);
 
 /// What Limn reads of a document.
 pub(super) struct Document {
@@ -160,7 +159,7 @@ impl Document {
             images: Items::take(r, "images", budget, typed)?,
             materials: Items::take(r, "materials", budget, material)?,
             meshes: Items::take(r, "meshes", budget, |mut mesh| {
-                let primitives = take(&mut mesh, "primitives").into_iter().map(primitive).collect();
+                let primitives = take_objects(&mut mesh, "primitives").map(primitive).collect();
                 Ok(Mesh { name: mesh.get("name").and_then(Value::as_str).map(str::to_owned), primitives })
             })?,
             nodes: Items::take(r, "nodes", budget, node)?,
@@ -169,7 +168,7 @@ impl Document {
                 let nodes = take(&mut scene, "nodes");
                 typed(Value::Object(Map::from_iter([("nodes".to_owned(), Value::Array(nodes))])))
             })?,
-            textures: Items::take(r, "textures", budget, typed)?,
+            textures: Items::take(r, "textures", budget, texture)?,
             rest: root,
         })
     }
@@ -178,11 +177,11 @@ impl Document {
     pub fn scene(&self) -> Result<Option<usize>, ReadError> {
         let place = format_args!("The file");
         match self.rest.get("scene") {
-            Some(scene) if !scene.is_null() => {
+            Some(scene) => {
                 let number = whole(scene).ok_or_else(|| bad(place, "its scene is not a whole number"))?;
                 self.scenes.check(usize::try_from(number).unwrap_or(usize::MAX), "scene", place).map(Some)
             }
-            _ => Ok(if self.scenes.len() > 0 { Some(0) } else { None }),
+            None => Ok((self.scenes.len() > 0).then_some(0)),
         }
     }
 }
@@ -202,11 +201,14 @@ fn take(value: &mut Value, key: &str) -> Vec<Value> {
     value.get_mut(key).and_then(Value::as_array_mut).map(std::mem::take).unwrap_or_default()
 }
 
+/// A list of objects; other values in it stand for objects without properties.
+fn take_objects(value: &mut Value, key: &str) -> impl ExactSizeIterator<Item = Value> {
+    let object = |value: Value| if value.is_object() { value } else { Value::Object(Map::new()) };
+    take(value, key).into_iter().map(object)
+}
+
 /// An element in its type, without what is not used.
 fn typed<T: DeserializeOwned>(mut value: Value) -> Result<T, String> {
-    if !value.is_object() {
-        return Err("it is not a JSON object".to_owned());
-    }
     tidy(&mut value)?;
     deserialize::from_value(value).map_err(|error| {
         let text = error.to_string();
@@ -225,21 +227,22 @@ fn tidy(value: &mut Value) -> Result<(), String> {
         _ => return Ok(()),
     };
     map.retain(|key, value| match key.as_str() {
-        "name" | "uri" | "alphaMode" => value.is_string(),
+        "name" | "uri" | "alphaMode" | "type" => value.is_string(),
         "normalized" | "doubleSided" => value.is_boolean(),
-        "extensions" => value.is_object(),
-        key => !value.is_null() && !NOT_USED.contains(&key),
+        "children" => value.is_array(),
+        // Without them there is still a shape, and some writers say -1 for none.
+        "skin" | "texCoord" => number(key, value, false).is_ok(),
+        key => !NOT_USED.contains(&key),
     });
     for (key, value) in map {
         let size = SIZES.contains(&key.as_str());
         match value {
-            Value::Array(list) if NUMBERS.contains(&key.as_str()) => {
+            Value::Array(list) if matches!(key.as_str(), "children" | "nodes") => {
                 list.iter_mut().try_for_each(|value| number(key, value, size))?
             }
-            // Elsewhere this is a number.
-            Value::Object(_) if key == "indices" => tidy(value)?,
+            // In the sparse part of an accessor; elsewhere this is a number.
+            Value::Object(map) if key == "indices" && map.contains_key("componentType") => tidy(value)?,
             _ if size || NUMBERS.contains(&key.as_str()) => number(key, value, size)?,
-            _ if key == "extensions" => value.get_mut(SPECULAR_GLOSSINESS).map_or(Ok(()), tidy)?,
             _ => tidy(value)?,
         }
     }
@@ -282,17 +285,24 @@ pub(super) fn numbers<const N: usize>(value: &Value, key: &str) -> Result<Option
 
 fn node(mut value: Value) -> Result<Node, String> {
     let local = Transform::of_node(&value)?;
+    let instances = extension(&value, "EXT_mesh_gpu_instancing").and_then(|e| e.get("attributes")).cloned();
     if let Some(map) = value.as_object_mut() {
         map.retain(|key, _| !matches!(key.as_str(), "matrix" | "translation" | "rotation" | "scale"));
     }
-    Ok(Node { json: typed(value)?, local })
+    Ok(Node { json: typed(value)?, local, instances })
 }
 
 fn primitive(mut value: Value) -> Result<Primitive, String> {
     let targets = list(&value, "targets").len();
+    let polygons = extension(&value, "FB_ngon_encoding").is_some();
+    let draco = extension(&value, "KHR_draco_mesh_compression").is_some();
     let (mut names, mut broken) = (Vec::new(), Vec::new());
     if let Some(map) = value.as_object_mut() {
         map.remove("targets");
+        // Of points and lines only the mode counts.
+        if map.get("mode").and_then(whole).is_some_and(|mode| mode < 4) {
+            map.retain(|key, _| key == "mode");
+        }
         let attributes = map.entry("attributes").or_insert(Value::Null);
         let mut good = Map::new();
         for (name, mut value) in attributes.as_object_mut().map(std::mem::take).unwrap_or_default() {
@@ -308,28 +318,60 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
         }
         *attributes = Value::Object(good);
     }
-    Ok(Primitive { json: typed(value)?, names, broken, targets })
+    Ok(Primitive { json: typed(value)?, names, broken, targets, polygons, draco })
+}
+
+fn texture(mut value: Value) -> Result<json::Texture, String> {
+    // Formats that browsers decode as well as PNG and JPEG.
+    let newer = extension(&value, "EXT_texture_webp").or(extension(&value, "EXT_texture_avif"));
+    if let (Some(source), Some(map)) = (newer.and_then(|e| e.get("source")).cloned(), value.as_object_mut()) {
+        map.insert("source".to_owned(), source);
+    }
+    typed(value)
 }
 
 fn material(mut value: Value) -> Result<Material, String> {
-    let mut unused = 0;
-    /// Keeps some properties and counts what is lost of the looks.
-    fn keep(value: Option<&mut Value>, keys: &[&str], unused: &mut u64) -> bool {
-        let Some(map) = value.and_then(Value::as_object_mut) else { return false };
-        *unused += LOOKS.iter().filter(|key| map.contains_key(**key)).count() as u64;
-        map.retain(|key, _| keys.contains(&key.as_str()));
-        !map.is_empty()
+    let metal = value.get("pbrMetallicRoughness");
+    let looks = |value: &Value| LOOKS.iter().filter(|key| value.get(**key).is_some()).count();
+    let extensions = value
+        .get("extensions")
+        .and_then(Value::as_object)
+        .map_or(0, |e| e.keys().filter(|k| k.starts_with("KHR_materials_") && *k != SPECULAR_GLOSSINESS).count());
+    let unused = (looks(&value) + metal.map_or(0, looks) + extensions) as u64;
+
+    let base = |of: Option<&Value>, color: &str, picture: &str| -> Result<_, String> {
+        let Some(of) = of else { return Ok((None, None)) };
+        let color = numbers::<4>(of, color)?.map(Value::from_iter);
+        match of.get(picture) {
+            Some(picture) if picture.get("index").is_none() => Err("its picture names no texture".to_owned()),
+            picture => Ok((color, picture.cloned())),
+        }
+    };
+    let (color, mut picture) = match base(metal, "baseColorFactor", "baseColorTexture")? {
+        (None, None) => base(extension(&value, SPECULAR_GLOSSINESS), "diffuseFactor", "diffuseTexture")?,
+        base => base,
+    };
+    let transform = picture.as_mut().map_or(Ok(None), uv_transform)?;
+    if let Some(map) = value.as_object_mut() {
+        map.retain(|key, _| matches!(key.as_str(), "name" | "doubleSided" | "alphaMode"));
+        let base = [("baseColorFactor", color), ("baseColorTexture", picture)];
+        let base = base.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?)));
+        map.insert("pbrMetallicRoughness".to_owned(), Value::Object(base.collect()));
     }
-    keep(Some(&mut value), &["name", "doubleSided", "alphaMode", "pbrMetallicRoughness", "extensions"], &mut unused);
-    let metal = value.get_mut("pbrMetallicRoughness");
-    let has_base = keep(metal, &["baseColorFactor", "baseColorTexture"], &mut unused);
-    if let Some(extensions) = value.get_mut("extensions").and_then(Value::as_object_mut) {
-        let materials = extensions.keys().filter(|k| k.starts_with("KHR_materials_") && *k != SPECULAR_GLOSSINESS);
-        unused += materials.count() as u64;
-        extensions.retain(|key, _| key == SPECULAR_GLOSSINESS && !has_base);
-        keep(extensions.get_mut(SPECULAR_GLOSSINESS), &["diffuseFactor", "diffuseTexture"], &mut unused);
+    Ok(Material { json: typed(value)?, transform, unused })
+}
+
+/// How a picture is moved, if it is; the extension may name other coordinates, too.
+fn uv_transform(picture: &mut Value) -> Result<Option<UvTransform>, String> {
+    let Some(t) = extension(picture, "KHR_texture_transform") else { return Ok(None) };
+    let offset = numbers(t, "offset")?.unwrap_or([0.0; 2]);
+    let scale = numbers(t, "scale")?.unwrap_or([1.0; 2]);
+    let rotation = t.get("rotation").and_then(Value::as_f64).unwrap_or(0.0);
+    let transform = (offset, rotation, scale);
+    if let (Some(set), Some(map)) = (t.get("texCoord").cloned(), picture.as_object_mut()) {
+        map.insert("texCoord".to_owned(), set);
     }
-    Ok(Material { json: typed(value)?, unused })
+    Ok(Some(transform).filter(|t| *t != ([0.0; 2], 0.0, [1.0; 2])))
 }
 
 /// A value for a message. Numbers and texts only: printing any JSON would bring in a whole serialiser.

@@ -4,12 +4,9 @@
 //! specular-glossiness extension's diffuse colour stands in where there is no metallic-roughness one. Opacity counts only
 //! where the material says so (`alphaMode`). Only materials that some surface uses are kept.
 
-use gltf::json::{Value, material::AlphaMode, texture::Info, validation::Checked};
+use gltf::json::{material::AlphaMode, texture::Info, validation::Checked};
 
-use super::{
-    container::Source,
-    document::{bad, numbers, whole},
-};
+use super::{container::Source, document::UvTransform};
 use crate::{
     Image, Material, ReadError,
     error::{WarningKind, Warnings},
@@ -21,8 +18,7 @@ use crate::{
 pub(super) struct UvUse {
     /// The number of the `TEXCOORD` attribute.
     pub set: u32,
-    /// Offset, rotation in radians, scale.
-    pub transform: Option<([f64; 2], f64, [f64; 2])>,
+    pub transform: Option<UvTransform>,
 }
 
 /// The materials and pictures in use, numbered in the order of their first use.
@@ -53,20 +49,15 @@ impl<'s> Materials<'s> {
         }
         let material = self.source.document.materials.get(number)?;
         let json = &material.json;
-        let diffuse = json.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
-        let metal = &json.pbr_metallic_roughness;
-        let (color, picture) = match diffuse {
-            Some(diffuse) => (diffuse.diffuse_factor.0, &diffuse.diffuse_texture),
-            None => (metal.base_color_factor.0, &metal.base_color_texture),
+        let base = &json.pbr_metallic_roughness;
+        let [r, g, b, a] = base.base_color_factor.0.map(|c| c.clamp(0.0, 1.0));
+        let opaque = matches!(json.alpha_mode, Checked::Valid(AlphaMode::Opaque));
+        let base_color = [r, g, b, if opaque { 1.0 } else { a }];
+        let (texture, set) = match &base.base_color_texture {
+            Some(info) => (self.texture(info, number, warnings)?, info.tex_coord),
+            None => (None, 0),
         };
-        let mut base_color = color.map(|c| c.clamp(0.0, 1.0));
-        if let (Checked::Valid(AlphaMode::Opaque), [_, _, _, a]) = (json.alpha_mode, &mut base_color) {
-            *a = 1.0;
-        }
-        let (texture, uv) = match picture {
-            Some(info) => self.texture(info, number, warnings)?,
-            None => (None, UvUse { set: 0, transform: None }),
-        };
+        let uv = UvUse { set, transform: material.transform };
         let name = json.name.clone().unwrap_or_default();
         warnings.add(WarningKind::MaterialSettings, material.unused, || None);
         let result = (self.out.len() as u32, uv);
@@ -77,43 +68,18 @@ impl<'s> Materials<'s> {
         Ok(result)
     }
 
-    fn texture(
-        &mut self,
-        info: &Info,
-        material: usize,
-        warnings: &mut Warnings,
-    ) -> Result<(Option<u32>, UvUse), ReadError> {
-        let place = format_args!("materials[{material}]");
+    fn texture(&mut self, info: &Info, material: usize, warnings: &mut Warnings) -> Result<Option<u32>, ReadError> {
         let document = &self.source.document;
-        let mut uv = UvUse { set: info.tex_coord, transform: None };
-        if let Some(t) = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform")) {
-            let wrong = |problem| bad(place, problem);
-            let offset = numbers(t, "offset").map_err(wrong)?.unwrap_or([0.0; 2]);
-            let scale = numbers(t, "scale").map_err(wrong)?.unwrap_or([1.0; 2]);
-            let rotation = t.get("rotation").and_then(Value::as_f64).unwrap_or(0.0);
-            uv.set = t.get("texCoord").and_then(whole).and_then(|set| u32::try_from(set).ok()).unwrap_or(uv.set);
-            if (offset, rotation, scale) != ([0.0; 2], 0.0, [1.0; 2]) {
-                uv.transform = Some((offset, rotation, scale));
-            }
-        }
-        let number = document.textures.check(info.index.value(), "index", place)?;
-        let texture = document.textures.get(number)?;
+        let number = document.textures.check(info.index.value(), "index", format_args!("materials[{material}]"))?;
         let place = format_args!("textures[{number}]");
-        // Formats that browsers decode as well as PNG and JPEG.
-        let newer = texture.extensions.as_ref().and_then(|e| {
-            ["EXT_texture_webp", "EXT_texture_avif"].iter().find_map(|name| whole(e.others.get(*name)?.get("source")?))
-        });
-        let image = match (newer, texture.source.value()) {
-            (Some(newer), _) => usize::try_from(newer).unwrap_or(usize::MAX),
+        match document.textures.get(number)?.source.value() {
             // This is how the crate says that there is none.
-            (None, none) if none == u32::MAX as usize => {
-                warnings.name(WarningKind::TextureFormat, &format!("textures[{number}]"));
-                return Ok((None, uv));
+            none if none == u32::MAX as usize => {
+                warnings.name(WarningKind::TextureFormat, &place.to_string());
+                Ok(None)
             }
-            (None, source) => source,
-        };
-        let image = document.images.check(image, "source", place)?;
-        Ok((self.image(image, warnings)?, uv))
+            image => self.image(document.images.check(image, "source", place)?, warnings),
+        }
     }
 
     fn image(&mut self, number: usize, warnings: &mut Warnings) -> Result<Option<u32>, ReadError> {

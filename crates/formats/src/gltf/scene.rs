@@ -6,7 +6,7 @@
 
 use super::{
     accessor::Accessor,
-    document::{Primitive, whole},
+    document::{Node, Primitive, whole},
     material::{Materials, UvUse},
     polygons::{Mode, polygons},
     transform::Transform,
@@ -15,7 +15,6 @@ use super::{
 use gltf::json::{
     Index,
     mesh::{Mode as Kind, Semantic},
-    scene::Node,
     validation::Checked,
 };
 
@@ -97,15 +96,14 @@ impl<'s> Builder<'s> {
             }
             let node = nodes.get(n)?;
             let global = parent.after(&node.local);
-            let node = &node.json;
-            if let Some(mesh) = node.mesh {
+            if let Some(mesh) = node.json.mesh {
                 let mesh = meshes.check(mesh.value(), "mesh", place)?;
                 // A skin's joints place its mesh, not the node.
-                let global = if node.skin.is_some() { Transform::IDENTITY } else { global };
+                let global = if node.json.skin.is_some() { Transform::IDENTITY } else { global };
                 let instances = self.instances(node, n, &global)?;
-                self.mesh(mesh, &instances, node.name.as_deref())?;
+                self.mesh(mesh, &instances, node.json.name.as_deref())?;
             }
-            let children = self.children(node.children.as_deref().unwrap_or_default(), "children", place)?;
+            let children = self.children(node.json.children.as_deref().unwrap_or_default(), "children", place)?;
             stack.extend(children.into_iter().rev().map(|c| (c, global)));
         }
         let hidden = meshes.len() - self.meshes_shown.len();
@@ -131,8 +129,7 @@ impl<'s> Builder<'s> {
 
     /// The transforms of a node's instances; one if it has no instancing extension.
     fn instances(&mut self, node: &Node, n: usize, global: &Transform) -> Result<Vec<Transform>, ReadError> {
-        let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing"));
-        let Some(attributes) = extension.and_then(|e| e.get("attributes")) else { return Ok(vec![*global]) };
+        let Some(attributes) = &node.instances else { return Ok(vec![*global]) };
         let place = format_args!("nodes[{n}]");
         let mut count = None;
         let mut get = |key: &str, rest: [f32; 4]| -> Result<Vec<[f32; 4]>, ReadError> {
@@ -189,13 +186,12 @@ impl<'s> Builder<'s> {
         transform: &Transform,
     ) -> Result<(), ReadError> {
         let json = &primitive.json;
-        let extends = |name: &str| json.extensions.as_ref().is_some_and(|e| e.others.contains_key(name));
         let mode = match json.mode {
             Checked::Valid(Kind::Points | Kind::Lines | Kind::LineLoop | Kind::LineStrip) => {
                 self.warnings.add(WarningKind::PointOrLinePrimitives, 1, || Some(format!("first {place}")));
                 return Ok(());
             }
-            Checked::Valid(Kind::Triangles) if extends("FB_ngon_encoding") => Mode::Polygons,
+            Checked::Valid(Kind::Triangles) if primitive.polygons => Mode::Polygons,
             Checked::Valid(Kind::Triangles) => Mode::List,
             Checked::Valid(Kind::TriangleStrip) => Mode::Strip,
             Checked::Valid(Kind::TriangleFan) => Mode::Fan,
@@ -208,8 +204,7 @@ impl<'s> Builder<'s> {
             return Ok(());
         };
         let positions = accessors.check(positions.value(), "POSITION", place)?;
-        let compressed = extends("KHR_draco_mesh_compression");
-        if compressed && accessors.get(positions)?.buffer_view.is_none() {
+        if primitive.draco && accessors.get(positions)?.buffer_view.is_none() {
             let name = "KHR_draco_mesh_compression".to_owned();
             return Err(ReadError::Extension { name, advice: "export the model without Draco compression" });
         }
