@@ -497,6 +497,8 @@ fn small_offences_do_not_cost_the_shape() {
     file.primitives[0]["indices"] = 1.0.into();
     file.primitives[0]["extras"] = json!(["anything"]);
     // Not needed, so what is wrong with them does not matter.
+    file.primitives.push(json!({"mode": 1, "attributes": {"POSITION": 0}, "indices": "x", "material": "x"}));
+    file.primitives.push(json!({"attributes": {"NORMAL": 0}, "indices": "x", "material": 1e300}));
     file.accessors.push(json!({"count": "many"}));
     file.views.push(json!("a view"));
     let pointer = json!({"channels": [{"sampler": 0, "target": {"path": "pointer"}}], "samplers": []});
@@ -511,7 +513,15 @@ fn small_offences_do_not_cost_the_shape() {
         (model.soup.positions.as_slice(), model.soup.corners.as_slice()),
         (&SQUARE[..], &[0, 1, 2, 0, 2, 3][..])
     );
-    assert_eq!(warnings, ["1 animation is not used.", "1 camera is not used."]);
+    assert_eq!(
+        warnings,
+        [
+            "1 primitive of points or lines (first meshes[0].primitives[1]) is not used.",
+            "1 primitive without positions (first meshes[0].primitives[2]) is left out.",
+            "1 animation is not used.",
+            "1 camera is not used.",
+        ]
+    );
 }
 
 #[test]

@@ -7,8 +7,10 @@
 //! The crate's own way, the whole file into one `Root`, is all or nothing: an animation with the KHR_animation_pointer
 //! extension, a scene without nodes or a `3.0` for a `3` refuses the file, without the element's name. Its validation asks
 //! for bounds that no reader needs, refuses extensions by its own list, and panics on a POSITION that is out of range. So
-//! elements are read one by one, and one that does not read is an error when a surface needs it, not earlier. Two things
-//! are read here because the crate's types lose digits: transforms (32 bits there) and numbers past 32 bits (cut off there).
+//! elements are read one by one, and one that does not read is an error when a surface needs it, not earlier.
+//!
+//! Some things are taken out of an element before the crate sees it: transforms, which it rounds to 32 bits; what Limn uses
+//! of extensions, which end up in what they extend; and numbers past 32 bits, of which it would take the low half.
 //!
 //! Cost: one pass over the JSON and one over its value. Source: glTF 2.0 specification, Khronos 2021.
 
@@ -152,6 +154,8 @@ impl Document {
     /// Sorts a parsed file's elements.
     pub fn new(mut root: Value, budget: &mut Budget) -> Result<Self, ReadError> {
         let r = &mut root;
+        let primitives: usize = list(r, "meshes").iter().map(|mesh| list(mesh, "primitives").len()).sum();
+        budget.spend("The file's JSON", primitives as u64, size_of::<Result<Primitive, String>>() as u64)?;
         Ok(Document {
             accessors: Items::take(r, "accessors", budget, typed)?,
             buffers: Items::take(r, "buffers", budget, typed)?,
@@ -299,10 +303,6 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
     let (mut names, mut broken) = (Vec::new(), Vec::new());
     if let Some(map) = value.as_object_mut() {
         map.remove("targets");
-        // Of points and lines only the mode counts.
-        if map.get("mode").and_then(whole).is_some_and(|mode| mode < 4) {
-            map.retain(|key, _| key == "mode");
-        }
         let attributes = map.entry("attributes").or_insert(Value::Null);
         let mut good = Map::new();
         for (name, mut value) in attributes.as_object_mut().map(std::mem::take).unwrap_or_default() {
@@ -316,7 +316,12 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
             }
             names.push(name);
         }
+        let positions = good.contains_key("POSITION");
         *attributes = Value::Object(good);
+        // What it has else does not matter where there are no faces to be read.
+        if !positions || map.get("mode").and_then(whole).is_some_and(|mode| mode < 4) {
+            map.retain(|key, _| matches!(key.as_str(), "mode" | "attributes"));
+        }
     }
     Ok(Primitive { json: typed(value)?, names, broken, targets, polygons, draco })
 }
