@@ -504,7 +504,7 @@ fn small_offences_do_not_cost_the_shape() {
     let pointer = json!({"channels": [{"sampler": 0, "target": {"path": "pointer"}}], "samplers": []});
     let file = file.with(json!({
         "scenes": [{"nodes": [0.0]}, {"name": "empty"}], "scene": 0.0,
-        "nodes": [{"mesh": 0.0, "skin": -1, "camera": "front", "weights": {}}, {"mesh": 99}],
+        "nodes": [{"mesh": 0.0, "skin": -1, "camera": "front", "weights": {}, "children": 5}, {"mesh": 99}],
         "materials": [{"alphaMode": 5}], "cameras": [{"type": "none"}], "animations": [pointer], "samplers": [[]],
         "extensions": [], "extras": 1,
     }));
@@ -806,6 +806,15 @@ fn the_memory_budget_holds() {
     assert!(read(100_000).is_ok());
     for limit in [0, 100, 1000, 3000] {
         assert!(matches!(read(limit), Err(ReadError::TooBig { limit: l, .. }) if l == limit), "{limit}");
+    }
+    // Elements without properties are three bytes each in the file, and hundreds once read.
+    let empty = vec![json!({}); 10_000];
+    for more in [json!({"nodes": empty}), json!({"meshes": [{"primitives": empty}]})] {
+        let mut root = json!({"asset": {"version": "2.0"}});
+        merge(&mut root, more);
+        let read = |bytes| limn_formats::read("a.gltf", root.to_string().as_bytes(), &(), &Limits { bytes });
+        assert!(matches!(read(2_000_000), Err(ReadError::TooBig { .. })));
+        assert!(matches!(read(10_000_000), Err(ReadError::NoFaces { .. })));
     }
     // Two billion zeros that cost the file nothing.
     let mut file = File::two_triangles();
