@@ -497,7 +497,7 @@ fn small_offences_do_not_cost_the_shape() {
     file.primitives[0]["indices"] = 1.0.into();
     file.primitives[0]["extras"] = json!(["anything"]);
     // Not needed, so what is wrong with them does not matter.
-    file.primitives.push(json!({"mode": 1, "attributes": {"POSITION": 0}, "indices": "x", "material": "x"}));
+    file.primitives.push(json!({"mode": 1, "attributes": {"POSITION": "x"}, "indices": "x", "material": "x"}));
     file.primitives.push(json!({"attributes": {"NORMAL": 0}, "indices": "x", "material": 1e300}));
     file.accessors.push(json!({"count": "many"}));
     file.views.push(json!("a view"));

@@ -303,6 +303,7 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
     let (mut names, mut broken) = (Vec::new(), Vec::new());
     if let Some(map) = value.as_object_mut() {
         map.remove("targets");
+        let no_faces = map.get("mode").and_then(whole).is_some_and(|mode| mode < 4);
         let attributes = map.entry("attributes").or_insert(Value::Null);
         let mut good = Map::new();
         for (name, mut value) in attributes.as_object_mut().map(std::mem::take).unwrap_or_default() {
@@ -311,7 +312,7 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
             match number(&name, &mut value, false) {
                 Ok(()) if !known => (),
                 Ok(()) => _ = good.insert(name.clone(), value),
-                Err(problem) if name == "POSITION" => return Err(problem),
+                Err(problem) if name == "POSITION" && !no_faces => return Err(problem),
                 Err(_) => broken.push((name.clone(), shown(&value))),
             }
             names.push(name);
@@ -319,7 +320,7 @@ fn primitive(mut value: Value) -> Result<Primitive, String> {
         let positions = good.contains_key("POSITION");
         *attributes = Value::Object(good);
         // What it has else does not matter where there are no faces to be read.
-        if !positions || map.get("mode").and_then(whole).is_some_and(|mode| mode < 4) {
+        if !positions || no_faces {
             map.retain(|key, _| matches!(key.as_str(), "mode" | "attributes"));
         }
     }
