@@ -5,11 +5,11 @@
 import * as cards from "./cards.js";
 import { Chrome } from "./chrome.js";
 import { byId } from "./dom.js";
+import { Drawer } from "./drawer.js";
 import * as files from "./files.js";
 import * as input from "./input.js";
 import * as keys from "./keys.js";
 import { Link } from "./link.js";
-import { Panel } from "./panel.js";
 import { Ruler } from "./ruler.js";
 import { Supervisor } from "./supervisor.js";
 
@@ -66,7 +66,7 @@ const send = (/** @type {string} */ text, /** @type {boolean} */ echo = false) =
 const sendSize = () => engine.send({ type: "size", size: size() });
 const ruler = new Ruler((text, drag) => engine.send({ type: "cmd", text, drag }));
 const chrome = new Chrome(send);
-const panel = new Panel(send, sendSize);
+const panel = new Drawer(send, sendSize);
 const link = new Link((text) => engine.send({ type: "replay", text }));
 
 /** For the console of the browser, and for tests. */

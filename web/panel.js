@@ -1,6 +1,7 @@
 // @ts-check
 // The panel on the right (a sheet from below on a phone): how the model is shown, how its surface is made, what its file held,
-// the console and the help. Its rows come from the engine's table of controls; what is chosen comes with every state.
+// the console and the help. Its rows come from the engine's table of controls; what is chosen comes with every state. It is
+// fetched when it is first reached for: see drawer.js.
 
 import { byId, el, full, setAttr, setText } from "./dom.js";
 import { spell } from "./keys.js";
@@ -8,54 +9,72 @@ import { spell } from "./keys.js";
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {import("./protocol.js").Hello} Hello */
 /** @typedef {"view" | "surface" | "report" | "console" | "help"} Tab */
+/** @typedef {{ command: string, text: string, ok: boolean }} Line */
 
-/** @type {Tab[]} */
-const TABS = ["view", "surface", "report", "console", "help"];
+/** @type {[Tab, string][]} */
+const TABS = [["view", "View"], ["surface", "Surface"], ["report", "Report"], ["console", "Console"], ["help", "Help"]];
 
 export class Panel {
   #root = byId("panel");
-  #log = byId("log");
+  #log = el("ol", { "aria-label": "Console output", "aria-live": "polite", id: "log" });
   #groups = el("fieldset", { className: "groups", hidden: true }, el("legend", {}, "Groups"));
   #report = "";
   #hiddenGroups = "";
   /** @type {string[]} */ #typed = [];
   #recalled = 0;
 
-  /** @param {(command: string, echo?: boolean) => void} send @param {() => void} resized */
-  constructor(send, resized) {
+  /** @param {(command: string, echo?: boolean) => void} send @param {() => void} resized @param {number} most lines of the console */
+  constructor(send, resized, most) {
     this.send = send;
     this.resized = resized;
-    for (const tab of TABS) byId(`tab-${tab}`).addEventListener("click", () => this.open(tab));
-    byId("tabs").addEventListener("keydown", (event) => {
-      const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      const at = TABS.findIndex((tab) => byId(`tab-${tab}`) === document.activeElement);
-      if (!by || at < 0) return;
-      event.preventDefault();
-      const next = TABS[(at + by + TABS.length) % TABS.length];
-      if (next) {
-        this.open(next);
-        byId(`tab-${next}`).focus();
-      }
+    this.most = most;
+    const input = el("input", {
+      id: "command", name: "command", type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, enterKeyHint: "go",
+      placeholder: "scheme loop", onkeydown: (/** @type {KeyboardEvent} */ event) => this.#recall(event, input),
     });
-    byId("panel-toggle").addEventListener("click", () => this.toggle());
-    byId("panel-close").addEventListener("click", () => this.close());
-    const input = byId("command", HTMLInputElement);
-    byId("console").addEventListener("submit", (event) => {
-      event.preventDefault();
-      const text = input.value.trim();
-      if (!text) return;
-      this.#typed.push(text);
-      this.#recalled = this.#typed.length;
-      input.value = "";
-      send(text, true);
-    });
-    input.addEventListener("keydown", (event) => {
-      const by = { ArrowUp: -1, ArrowDown: 1 }[event.key];
-      if (!by || (by > 0 && this.#recalled >= this.#typed.length)) return;
-      event.preventDefault();
-      this.#recalled = Math.min(this.#typed.length, Math.max(0, this.#recalled + by));
-      input.value = this.#typed[this.#recalled] ?? "";
-    });
+    input.setAttribute("list", "commands");
+    const form = el("form", { id: "console", onsubmit: (/** @type {Event} */ event) => this.#submit(event, input) },
+      el("label", { for: "command" }, "Command"), input, el("datalist", { id: "commands" }));
+    const tabs = TABS.map(([tab, label]) =>
+      el("button", { role: "tab", type: "button", id: `tab-${tab}`, "aria-controls": `pane-${tab}`, onclick: () => this.open(tab) }, label));
+    this.#root.replaceChildren(
+      el("div", { id: "tabs", role: "tablist", "aria-label": "Panel", onkeydown: (/** @type {KeyboardEvent} */ event) => this.#roam(event) }, ...tabs),
+      el("button", { id: "panel-close", type: "button", "aria-label": "Close the panel", title: "Close (Esc)", onclick: () => this.close() }, "Close"),
+      ...TABS.map(([tab]) =>
+        el("div", { role: "tabpanel", id: `pane-${tab}`, "aria-labelledby": `tab-${tab}` }, ...(tab === "console" ? [this.#log, form] : []))),
+    );
+    this.#choose("view");
+  }
+
+  /** Arrows go through the tabs. @param {KeyboardEvent} event */
+  #roam(event) {
+    const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    const at = TABS.findIndex(([tab]) => byId(`tab-${tab}`) === document.activeElement);
+    if (!by || at < 0) return;
+    event.preventDefault();
+    const [next] = TABS[(at + by + TABS.length) % TABS.length] ?? ["view"];
+    this.open(next);
+    byId(`tab-${next}`).focus();
+  }
+
+  /** @param {Event} event @param {HTMLInputElement} input */
+  #submit(event, input) {
+    event.preventDefault();
+    const text = input.value.trim();
+    if (!text) return;
+    this.#typed.push(text);
+    this.#recalled = this.#typed.length;
+    input.value = "";
+    this.send(text, true);
+  }
+
+  /** Up and down go through what was typed. @param {KeyboardEvent} event @param {HTMLInputElement} input */
+  #recall(event, input) {
+    const by = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+    if (!by || (by > 0 && this.#recalled >= this.#typed.length)) return;
+    event.preventDefault();
+    this.#recalled = Math.min(this.#typed.length, Math.max(0, this.#recalled + by));
+    input.value = this.#typed[this.#recalled] ?? "";
   }
 
   get shown() {
@@ -69,13 +88,18 @@ export class Panel {
 
   /** @param {Tab} tab */
   open(tab) {
-    for (const other of TABS) {
-      setAttr(byId(`tab-${other}`), "aria-selected", String(other === tab));
-      byId(`tab-${other}`).tabIndex = other === tab ? 0 : -1;
-      byId(`pane-${other}`).hidden = other !== tab;
-    }
+    this.#choose(tab);
     this.#set(true);
     if (tab === "console") byId("command").focus();
+  }
+
+  /** @param {Tab} chosen */
+  #choose(chosen) {
+    for (const [tab] of TABS) {
+      setAttr(byId(`tab-${tab}`), "aria-selected", String(tab === chosen));
+      byId(`tab-${tab}`).tabIndex = tab === chosen ? 0 : -1;
+      byId(`pane-${tab}`).hidden = tab !== chosen;
+    }
   }
 
   /** Opens a tab, or closes the panel where that tab is open already. @param {Tab} tab */
@@ -86,7 +110,7 @@ export class Panel {
 
   toggle() {
     if (this.shown) this.close();
-    else this.open(TABS.find((tab) => !byId(`pane-${tab}`).hidden) ?? "view");
+    else this.open(TABS.find(([tab]) => !byId(`pane-${tab}`).hidden)?.[0] ?? "view");
   }
 
   close() {
@@ -171,10 +195,10 @@ export class Panel {
     );
   }
 
-  /** @param {{ command: string, text: string, ok: boolean }} line */
+  /** @param {Line} line */
   log(line) {
     this.#log.append(el("li", { className: line.ok ? "" : "error" }, el("code", {}, line.command), ...(line.text ? [el("pre", {}, line.text)] : [])));
-    while (this.#log.children.length > 200) this.#log.firstElementChild?.remove();
+    while (this.#log.children.length > this.most) this.#log.firstElementChild?.remove();
     const pane = byId("pane-console");
     pane.scrollTop = pane.scrollHeight;
   }
