@@ -22,7 +22,7 @@
 /** @type {Set<() => void>} */
 const running = new Set();
 
-/** Ends every job; they never answer. */
+/** Ends every reading; they never answer. What a visitor saves goes on. */
 export function stop() {
   for (const end of running) end();
 }
@@ -45,7 +45,7 @@ function run(job, bytes) {
       worker.terminate();
       running.delete(end);
     };
-    running.add(end);
+    if ("names" in job) running.add(end);
     worker.onmessage = (/** @type {MessageEvent<Answer>} */ { data }) => {
       end();
       if (data.error === undefined) resolve(data);

@@ -8,25 +8,13 @@
 /** @typedef {import("./protocol.js").NamedFile} NamedFile */
 /** @typedef {import("./protocol.js").Renderer} Renderer */
 /** @typedef {import("./protocol.js").Engine} Engine */
-
-import * as formats from "./formats.js";
-
-/**
- * What the engine asks of its surroundings, beside the messages that go on to the page.
- * @typedef {{ type: "fetch", url: string, turn: number }
- *   | { type: "decode", index: number, mime: string, bytes: Uint8Array<ArrayBuffer>, turn: number }
- *   | { type: "write", name: string, bytes: Uint8Array<ArrayBuffer> }
- *   | { type: "png", name: string, width: number, height: number, bytes: Uint8Array<ArrayBuffer> }} Wish
- */
+/** @typedef {import("./errands.js").Wish} Wish */
+/** @typedef {import("./errands.js").Errands} Errands */
 
 /** One slice of work, in milliseconds. */
 const SLICE = 8;
-/** The most that is read from an address, in bytes. */
-const MOST_FETCHED = 1 << 30;
 /** Files smaller than this are read before anybody could wonder, in bytes. */
 const TALKED_ABOUT = 3_000_000;
-/** Larger pictures are made smaller while they are decoded: the longest side in pixels. */
-const MOST_PIXELS = 4096;
 
 /**
  * @param {(message: FromEngine, transfer?: Transferable[]) => void} post
@@ -43,6 +31,8 @@ export function createHost(post) {
   let drawn = false;
   /** Counts what was asked to be opened: an answer to an older wish is dropped. */
   let asked = 0;
+  /** @type {Promise<Errands> | null} */
+  let errands = null;
   const turns = new MessageChannel();
 
   /** @param {unknown} error */
@@ -90,109 +80,38 @@ export function createHost(post) {
   /** @param {FromEngine | Wish} message */
   const emit = (message) => {
     if (message.type === "fault") dead = true;
-    if (message.type === "fetch") void download(message.url, message.turn);
-    else if (message.type === "decode") void decode(message);
-    else if (message.type === "png") void picture(message);
-    else if (message.type === "write") void write(message);
-    else post(message);
+    if (message.type === "fetch" || message.type === "decode" || message.type === "png" || message.type === "write") {
+      void errand((e) => e.run(message));
+    } else post(message);
   };
 
-  /** @param {string} url @param {number} turn */
-  const download = async (url, turn) => {
-    /** @type {Uint8Array[]} */
-    const parts = [];
+  /**
+   * Does something that only errands.js can, which is loaded by the first of them.
+   * @template T @param {(errands: Errands) => T | Promise<T>} act @returns {Promise<T | undefined>}
+   */
+  const errand = async (act) => {
+    /** @type {Errands} */
+    let found;
     try {
-      const answer = await fetch(url, { mode: "cors", credentials: "omit" });
-      if (!answer.ok) {
-        enter((e) => e.fetched(url, turn, undefined, `the server answered ${answer.status} ${answer.statusText}`.trim()));
-        return;
-      }
-      const total = Number(answer.headers.get("content-length")) || 0;
-      const reader = answer.body?.getReader();
-      let got = 0;
-      for (;;) {
-        const { done, value } = (await reader?.read()) ?? { done: true, value: undefined };
-        if (done || !value) break;
-        parts.push(value);
-        got += value.length;
-        if (got > MOST_FETCHED) throw new RangeError("the file is larger than 1 GB");
-        post({ type: "progress", what: `Reading ${new URL(url, location.href).pathname.split("/").pop()}`, done: total ? got / total : -1, cancel: true });
-      }
-      const bytes = new Uint8Array(got);
-      parts.reduce((at, part) => (bytes.set(part, at), at + part.length), 0);
-      const name = decodeURIComponent(new URL(url, location.href).pathname.split("/").pop() ?? "");
-      const parcel = await formats.read({ names: [name], bytes: [bytes], wanted: undefined, budget: engine?.budget() ?? 0 });
-      enter((e) => e.fetched(url, turn, parcel, ""));
-    } catch (error) {
-      const why = error instanceof RangeError
-        ? error.message
-        : "it could not be reached, or its server does not allow other sites to read it (CORS); download the file and drop it here instead";
-      enter((e) => e.fetched(url, turn, undefined, why));
-    }
-  };
-
-  /** @param {Extract<Wish, { type: "decode" }>} wish */
-  const decode = async ({ index, mime, bytes, turn }) => {
-    /** @type {ImageBitmap | undefined} */
-    let bitmap;
-    try {
-      const options = /** @type {const} */ ({ premultiplyAlpha: "none", colorSpaceConversion: "none" });
-      const blob = new Blob([bytes], { type: mime });
-      bitmap = await createImageBitmap(blob, options);
-      const shrink = MOST_PIXELS / Math.max(bitmap.width, bitmap.height);
-      if (shrink < 1) {
-        const side = (/** @type {number} */ n) => Math.max(1, Math.round(n * shrink));
-        bitmap = await createImageBitmap(blob, { ...options, resizeWidth: side(bitmap.width), resizeHeight: side(bitmap.height) });
-      }
+      found = await (errands ??= import("./errands.js").then(({ createErrands }) =>
+        createErrands({ post, enter, budget: () => engine?.budget() ?? 0 })));
     } catch {
-      bitmap = undefined;
-    }
-    enter((e) => e.decoded(turn, index, bitmap));
-  };
-
-  /** The media types of what exports are made of. @type {Record<string, string>} */
-  const types = { obj: "model/obj", mtl: "model/mtl", glb: "model/gltf-binary", png: "image/png", jpg: "image/jpeg", jpeg: "image/jpeg", webp: "image/webp" };
-
-  /** @param {Extract<Wish, { type: "write" }>} wish */
-  const write = async ({ name, bytes }) => {
-    try {
-      for (const out of await formats.write({ packed: bytes, file: name })) {
-        const mime = types[out.name.split(".").pop()?.toLowerCase() ?? ""] ?? "application/octet-stream";
-        post({ type: "file", name: out.name, mime, bytes: out.bytes }, [out.bytes.buffer]);
-      }
-    } catch (error) {
-      const why = error instanceof Error ? error.message : String(error);
-      post({ type: "card", card: { id: "write", kind: "error", title: `${name} could not be written`, lines: [sentence(why)], ask: "" } });
-    }
-  };
-
-  /** Reads files in a thread of their own. A card tells what goes wrong. @param {NamedFile[]} files @param {string} text @param {boolean} again */
-  const parcelOf = async (files, text, again) => {
-    const { names, bytes, failed } = await read(files);
-    const trouble = (/** @type {string} */ name, /** @type {string} */ why) =>
-      post({ type: "card", card: { id: "read", kind: "error", title: `${name} could not be read`, lines: [sentence(why)], ask: "" } });
-    if (failed) trouble(failed, "The browser gave no bytes: it may have moved or changed; drop it again.");
-    if (!engine || !names.length) return undefined;
-    try {
-      return await formats.read({ names, bytes, wanted: engine.wanted(text, again), budget: engine.budget() });
-    } catch (error) {
-      trouble(names[0] ?? "The file", error instanceof Error ? error.message : String(error));
+      errands = null;
+      enter((e) => e.cancel());
+      const lines = ["Is the network there? Try again, or reload the page."];
+      post({ type: "card", card: { id: "read", kind: "error", title: "A part of Limn could not be loaded", lines, ask: "" } });
       return undefined;
     }
+    return act(found);
   };
 
-  /** @param {Extract<Wish, { type: "png" }>} wish */
-  const picture = async ({ name, width, height, bytes }) => {
-    try {
-      const paper = new OffscreenCanvas(width, height);
-      const pixels = new Uint8ClampedArray(bytes.buffer, bytes.byteOffset, bytes.length);
-      paper.getContext("2d")?.putImageData(new ImageData(pixels, width, height), 0, 0);
-      const blob = await paper.convertToBlob({ type: "image/png" });
-      const png = new Uint8Array(await blob.arrayBuffer());
-      post({ type: "file", name, mime: "image/png", bytes: png }, [png.buffer]);
-    } catch (error) {
-      post({ type: "card", card: { id: "png", kind: "error", title: "The picture could not be saved", lines: [String(error)], ask: "" } });
-    }
+  /** Reads the model among files. @param {NamedFile[]} files @param {string} text @param {boolean} again @param {() => boolean} still */
+  const read = async (files, text, again, still) => {
+    if (!files.length) return undefined;
+    /** @type {string | undefined} */
+    let wanted;
+    enter((e) => (wanted = e.wanted(text, again)));
+    return errand((e) => e.read(files, wanted, still));
   };
 
   /** @param {Extract<ToEngine, { type: "start" }>} start */
@@ -217,7 +136,7 @@ export function createHost(post) {
       return;
     }
     // Messages that came meanwhile wait until the files are read: the document comes first.
-    const parcel = await parcelOf(start.files, start.text, false);
+    const parcel = await read(start.files, start.text, false, () => true);
     enter((e) => e.replay(start.text, start.notice, parcel));
     for (const message of waiting.splice(0)) deliver(message);
   };
@@ -238,10 +157,10 @@ export function createHost(post) {
       case "reload": {
         const again = message.type === "reload";
         const mine = (asked += 1);
-        formats.stop();
+        void errands?.then((e) => e.stop());
         const size = message.files.reduce((sum, { file }) => sum + file.size, 0);
         if (size > TALKED_ABOUT) post({ type: "progress", what: `Reading ${message.files[0]?.name}`, done: -1, cancel: true });
-        void parcelOf(message.files, "", again).then((parcel) => {
+        void read(message.files, "", again, () => mine === asked).then((parcel) => {
           // Cancelled, or something else was dropped since.
           if (mine !== asked) return;
           if (parcel || (again && !message.files.length)) enter((e) => e.open(parcel, again));
@@ -269,7 +188,7 @@ export function createHost(post) {
         break;
       case "cancel":
         asked += 1;
-        formats.stop();
+        void errands?.then((e) => e.stop());
         post({ type: "progress", what: "", done: 0, cancel: false });
         enter((e) => e.cancel());
         post({ type: "pong" });
@@ -282,12 +201,6 @@ export function createHost(post) {
   return deliver;
 }
 
-/** With a capital and a full stop. @param {string} text */
-function sentence(text) {
-  const whole = text.charAt(0).toUpperCase() + text.slice(1);
-  return /[.!?]$/.test(whole) ? whole : `${whole}.`;
-}
-
 /** Which of the two modules this browser can draw with. @returns {Promise<Renderer>} */
 async function probe() {
   try {
@@ -295,20 +208,4 @@ async function probe() {
   } catch {
     return "webgl2";
   }
-}
-
-/** @param {NamedFile[]} files */
-async function read(files) {
-  /** @type {string[]} */ const names = [];
-  /** @type {Uint8Array<ArrayBuffer>[]} */ const bytes = [];
-  let failed = "";
-  for (const { name, file } of files) {
-    try {
-      bytes.push(new Uint8Array(await file.arrayBuffer()));
-      names.push(name);
-    } catch {
-      failed ||= name;
-    }
-  }
-  return { names, bytes, failed };
 }

@@ -135,7 +135,8 @@ async function reload() {
   const kind = limn.state?.model?.reload;
   if (!kind) return;
   try {
-    engine.send({ type: "reload", files: kind === "file" ? await files.again(engine.files) : [] });
+    const { again } = await import("./dropped.js");
+    engine.send({ type: "reload", files: kind === "file" ? await again(engine.files) : [] });
   } catch {
     const name = limn.state?.model?.name ?? "";
     const lines = ["The browser lets a page read a chosen file only until it changes. Files that were dropped can be read again."];
@@ -177,7 +178,7 @@ for (const id of /** @type {const} */ (["open", "help", "copy", "theme"])) byId(
 byId("reload").addEventListener("click", () => void reload());
 byId("cancel").addEventListener("click", () => engine.send({ type: "cancel" }));
 keys.listen(send, (action) => actions[action]());
-files.listen(open, (url) => send(`open ${url}`));
+files.listen(open, (url) => send(`open ${url}`), cards.toast);
 input.listen((batch) => engine.send({ type: "input", batch }));
 dark.addEventListener("change", () => {
   if (chosen()) return;
