@@ -160,6 +160,7 @@ export interface State {
   groups: Group[];
   report: { text: string; kind: "note" | "warning" }[];
   exports: { label: string; help: string; command: string }[];
+  /** What undo would take back, such as "level 3"; null if nothing. */
   undo: string | null;
   redo: string | null;
   text: string;

@@ -92,8 +92,11 @@ describe("the controls", () => {
     await level(3);
     await page.getByRole("radio", { name: /Linear/ }).click();
     await ready(page, (state) => state.shown.scheme === "linear");
+    const titles = () => page.$$eval("#undo, #redo", (buttons) => buttons.map((button) => button.getAttribute("title")));
+    assert.deepEqual(await titles(), ["Undo scheme linear", "Redo"]);
     await page.locator("#undo").click();
     await ready(page, (state) => state.shown.scheme === "catmull-clark");
+    assert.deepEqual(await titles(), ["Undo level 3", "Redo scheme linear"]);
     await page.keyboard.press("Control+z");
     await level(1);
     assert.deepEqual((await picture(page)).data, start.data, "undone to the same picture");

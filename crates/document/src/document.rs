@@ -141,7 +141,7 @@ impl Document {
         };
         let shape = shape(name).ok_or_else(|| CommandError::UnknownShape { name: name.clone() })?;
         let model = Model { name: name.clone(), soup: (shape.build)(), ..Model::default() };
-        self.replace(State::new(source.clone(), model, &[])?);
+        self.replace(State::new(source.clone(), model, &[])?, false);
         self.pending = None;
         Ok(Outcome::Model)
     }
@@ -206,7 +206,7 @@ impl Document {
             }
         }
         let view = self.view.clone();
-        self.replace(state);
+        self.replace(state, reload);
         if reload {
             self.view = view;
             let (bounds, aspect) = (self.bounds(), self.aspect);
@@ -215,10 +215,11 @@ impl Document {
         Ok(Outcome::Model)
     }
 
-    /// Takes a state with another model.
-    fn replace(&mut self, state: State) {
+    /// Takes a state with another model, or with the same one read again.
+    fn replace(&mut self, state: State, reload: bool) {
         if let Some(before) = self.state.replace(state.clone()) {
-            self.history.record(before, &state, "open", false, State::same);
+            let step = if reload { "reload".to_owned() } else { format!("open {}", state.source.name()) };
+            self.history.record(before, &state, "open", step, false, State::same);
             self.trim();
         }
         self.reset_view();
@@ -321,7 +322,7 @@ impl Document {
             after.rebuild()?;
         }
         after.settle(self.budget)?;
-        self.history.record(before.clone(), &after, command.name(), drag, State::same);
+        self.history.record(before.clone(), &after, command.name(), command.to_string(), drag, State::same);
         self.state = Some(after.clone());
         Ok(self.compare(&before, &after))
     }
@@ -429,6 +430,11 @@ impl Document {
     /// How many steps can be taken back and done again.
     pub fn undo_depth(&self) -> (usize, usize) {
         self.history.depth()
+    }
+
+    /// What `undo` would take back and `redo` would do again, in a few words such as `level 3` or `open cow.obj`.
+    pub fn undo_steps(&self) -> (Option<&str>, Option<&str>) {
+        self.history.steps()
     }
 
     /// The fewest commands that lead here from an empty document; empty without a model.

@@ -2,20 +2,28 @@
 //!
 //! A snapshot is a [`Clone`] that shares its large parts (models and meshes are behind `Arc`), so an entry costs what changed. A
 //! slider that is dragged sets its value many times and is one entry: [`History::record`] is told which setting is being
-//! dragged and keeps only the state from before the first.
+//! dragged and keeps only the state from before the first. Every entry carries the text of the step between it and the
+//! present, so that a button can say what it would take back.
 //!
 //! ```text
-//!   past  [a b c]  present d  future [f e]     undo: d goes to the future, c comes back
+//!   past  [a b c]  present d  future [f e]     undo: d goes to the future, c comes back, and so does the step's text
 //! ```
 
 /// How many entries are kept; older ones are forgotten.
 pub const LIMIT: usize = 256;
 
+/// A state, and the step that leads from it (in the past) or to it (in the future).
+#[derive(Clone, Debug)]
+struct Entry<S> {
+    state: S,
+    step: String,
+}
+
 /// States before and after the present one.
 #[derive(Clone, Debug)]
 pub struct History<S> {
-    past: Vec<S>,
-    future: Vec<S>,
+    past: Vec<Entry<S>>,
+    future: Vec<Entry<S>>,
     /// The setting that is being dragged.
     gesture: Option<&'static str>,
 }
@@ -27,15 +35,27 @@ impl<S> Default for History<S> {
 }
 
 impl<S: Clone> History<S> {
-    /// Notes a step from `before` to `now`. `name` says what was set; `drag` that more of the same may follow and belong to
-    /// this step. A step that changes nothing (`same`) is none, and neither is a drag that ends where it began.
-    pub fn record(&mut self, before: S, now: &S, name: &'static str, drag: bool, same: impl Fn(&S, &S) -> bool) {
-        if self.gesture == Some(name) {
-            if self.past.last().is_some_and(|first| same(first, now)) {
+    /// Notes a step from `before` to `now`. `name` says what was set, `step` how, in words; `drag` that that
+    /// more of the same may follow and belong to this step, whose words are then the last ones. A step that changes nothing
+    /// (`same`) is none, and neither is a drag that ends where it began.
+    pub fn record(
+        &mut self,
+        before: S,
+        now: &S,
+        name: &'static str,
+        step: String,
+        drag: bool,
+        same: impl Fn(&S, &S) -> bool,
+    ) {
+        if self.gesture == Some(name)
+            && let Some(first) = self.past.last_mut()
+        {
+            if same(&first.state, now) {
                 self.past.pop();
                 self.gesture = None;
                 return;
             }
+            first.step = step;
         } else {
             if same(&before, now) {
                 return;
@@ -43,7 +63,7 @@ impl<S: Clone> History<S> {
             if self.past.len() >= LIMIT {
                 self.past.remove(0);
             }
-            self.past.push(before);
+            self.past.push(Entry { state: before, step });
         }
         self.future.clear();
         self.gesture = drag.then_some(name);
@@ -52,17 +72,22 @@ impl<S: Clone> History<S> {
     /// Steps back from `present`; `None` if there is nothing before it.
     pub fn undo(&mut self, present: &S) -> Option<S> {
         self.gesture = None;
-        let before = self.past.pop()?;
-        self.future.push(present.clone());
-        Some(before)
+        let Entry { state, step } = self.past.pop()?;
+        self.future.push(Entry { state: present.clone(), step });
+        Some(state)
     }
 
     /// Steps forward from `present`; `None` if there is nothing after it.
     pub fn redo(&mut self, present: &S) -> Option<S> {
         self.gesture = None;
-        let after = self.future.pop()?;
-        self.past.push(present.clone());
-        Some(after)
+        let Entry { state, step } = self.future.pop()?;
+        self.past.push(Entry { state: present.clone(), step });
+        Some(state)
+    }
+
+    /// The step that [`Self::undo`] would take back and the one that [`Self::redo`] would do again, in words.
+    pub fn steps(&self) -> (Option<&str>, Option<&str>) {
+        (self.past.last().map(|e| &*e.step), self.future.last().map(|e| &*e.step))
     }
 
     /// Whether there is a step back and a step forward.
@@ -72,8 +97,8 @@ impl<S: Clone> History<S> {
 
     /// Asks from the newest past entry on, and forgets the first that `forget` holds of and all before it, to give back what
     /// they share.
-    pub fn forget_up_to(&mut self, forget: impl FnMut(&S) -> bool) {
-        if let Some(last) = self.past.iter().rposition(forget) {
+    pub fn forget_up_to(&mut self, mut forget: impl FnMut(&S) -> bool) {
+        if let Some(last) = self.past.iter().rposition(|entry| forget(&entry.state)) {
             self.past.drain(..=last);
         }
     }
@@ -85,7 +110,7 @@ mod tests {
 
     fn step(history: &mut History<i32>, present: &mut i32, to: i32, name: &'static str, drag: bool) {
         let before = std::mem::replace(present, to);
-        history.record(before, present, name, drag, i32::eq);
+        history.record(before, present, name, format!("{name} {to}"), drag, i32::eq);
     }
 
     #[test]
@@ -120,6 +145,25 @@ mod tests {
         step(&mut h, &mut now, 1, "other", true);
         assert_eq!(h.depth(), (2, 0));
         assert_eq!(h.undo(&now), Some(8));
+    }
+
+    #[test]
+    fn a_step_keeps_its_words_on_its_way_to_and_fro() {
+        let (mut h, mut now) = (History::default(), 0);
+        assert_eq!(h.steps(), (None, None));
+        step(&mut h, &mut now, 1, "level", false);
+        for size in [5, 6, 7] {
+            step(&mut h, &mut now, size, "size", true);
+        }
+        assert_eq!(h.steps(), (Some("size 7"), None), "a drag is called by its end");
+        now = h.undo(&now).unwrap();
+        assert_eq!((now, h.steps()), (1, (Some("level 1"), Some("size 7"))));
+        now = h.undo(&now).unwrap();
+        assert_eq!((now, h.steps()), (0, (None, Some("level 1"))));
+        now = h.redo(&now).unwrap();
+        assert_eq!((now, h.steps()), (1, (Some("level 1"), Some("size 7"))));
+        step(&mut h, &mut now, 9, "level", false);
+        assert_eq!(h.steps(), (Some("level 9"), None));
     }
 
     #[test]

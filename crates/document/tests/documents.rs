@@ -223,6 +223,24 @@ fn a_slider_drag_is_one_step() {
 }
 
 #[test]
+fn undo_says_what_it_takes_back() {
+    let mut d = document("open builtin:cube");
+    assert_eq!(d.undo_steps(), (None, None));
+    run(&mut d, "level 3");
+    run(&mut d, "scheme loop");
+    run(&mut d, "scale 2.50");
+    assert_eq!(d.undo_steps(), (Some("scale 2.5"), None));
+    run(&mut d, "undo");
+    assert_eq!(d.undo_steps(), (Some("scheme loop"), Some("scale 2.5")));
+    run(&mut d, "open builtin:pawn");
+    assert_eq!(d.undo_steps(), (Some("open pawn"), None));
+    run(&mut d, "undo");
+    assert_eq!(d.undo_steps(), (Some("scheme loop"), Some("open pawn")));
+    assert!(d.run("level 40").is_err());
+    assert_eq!(d.undo_steps(), (Some("scheme loop"), Some("open pawn")), "a refused command leaves no trace");
+}
+
+#[test]
 fn undo_brings_back_the_model_before() {
     let mut d = document("open builtin:cube level 2");
     let cube = d.mesh().unwrap().clone();

@@ -227,7 +227,7 @@ pub struct State {
     pub report: Vec<Remark>,
     /// Ways to save.
     pub exports: Vec<ExportChoice>,
-    /// What undo would take back; none if nothing.
+    /// What undo would take back, such as `level 3`; none if nothing.
     pub undo: Option<String>,
     /// What redo would do again.
     pub redo: Option<String>,

@@ -164,7 +164,7 @@ impl Engine {
         let stem = document.model().map_or("model", |m| m.name.as_str());
         let stem = plan.filter(|p| p.level > 0).map_or(stem.to_owned(), |p| format!("{stem}-{}", p.level));
         let file = |ending: &str| format!("export {}", limn_document::words::quote(&format!("{stem}.{ending}")));
-        let (undo, redo) = document.undo_depth();
+        let (undo, redo) = document.undo_steps();
         let lines = document.commands().into_iter().filter(Engine::is_open).map(|c| c.to_string());
         State {
             model,
@@ -187,8 +187,8 @@ impl Engine {
                 ExportChoice { label: "GLB", help: "glTF for programs that draw", command: file("glb") },
                 ExportChoice { label: "PNG", help: "A picture of this view", command: file("png") },
             ],
-            undo: (undo > 0).then(String::new),
-            redo: (redo > 0).then(String::new),
+            undo: undo.map(str::to_owned),
+            redo: redo.map(str::to_owned),
             text: document.text(),
             origin: lines.collect(),
             link: document.link(),
