@@ -13,8 +13,8 @@ export function say(text) {
   setText(byId("live"), text);
 }
 
-/** @param {Card} card */
-export function show(card) {
+/** @param {Card} card @param {() => void} [ask] what its open button does */
+export function show(card, ask = pick) {
   const cards = byId("cards");
   const id = `card-${card.id}`;
   const old = document.getElementById(id);
@@ -26,7 +26,7 @@ export function show(card) {
     el("h2", {}, card.title),
     ...(card.lines.length > 1 ? [el("ul", {}, ...card.lines.map((line) => el("li", {}, line)))] : card.lines.map((line) => el("p", {}, line))),
     el("div", { className: "row" },
-      ...(card.ask ? [el("button", { type: "button", className: "main", onclick: () => pick() }, `Open ${card.ask}`)] : []),
+      ...(card.ask ? [el("button", { type: "button", className: "main", onclick: () => ask() }, `Open ${card.ask}`)] : []),
       el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => made.remove() }, "Dismiss"),
     ),
   );

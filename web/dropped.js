@@ -32,17 +32,30 @@ export async function gather(dropped) {
   /** @type {NamedFile[]} */
   const files = [];
   for (const { entry, file, handle } of dropped) {
-    if (entry?.isDirectory) {
-      await walk(/** @type {FileSystemDirectoryEntry} */ (entry), files);
-    } else if (file) {
-      const known = await handle;
-      files.push(known?.kind === "file" ? { name: file.name, file, handle: /** @type {FileSystemFileHandle} */ (known) } : { name: file.name, file });
-    }
+    const known = await handle;
+    if (known) await collect(known, known.name, files);
+    else if (entry?.isDirectory) await walk(/** @type {FileSystemDirectoryEntry} */ (entry), files);
+    else if (file) files.push({ name: file.name, file });
   }
   return files;
 }
 
-/** @param {FileSystemDirectoryEntry} folder @param {NamedFile[]} into */
+/** A file, or those in a folder, by handles: they can be read again when they have changed. @param {FileSystemHandle} handle @param {string} name @param {NamedFile[]} into */
+async function collect(handle, name, into) {
+  if (into.length >= MOST_FILES) return;
+  if (handle.kind === "file") {
+    const found = /** @type {FileSystemFileHandle} */ (handle);
+    into.push({ name, file: await found.getFile(), handle: found });
+    return;
+  }
+  // What a folder holds is not in TypeScript's DOM yet.
+  const { values } = /** @type {{ values(): AsyncIterable<FileSystemHandle> }} */ (/** @type {unknown} */ (handle));
+  for await (const child of values.call(handle)) {
+    if (!child.name.startsWith(".")) await collect(child, `${name}/${child.name}`, into);
+  }
+}
+
+/** The same where there are no handles. @param {FileSystemDirectoryEntry} folder @param {NamedFile[]} into */
 async function walk(folder, into) {
   const reader = folder.createReader();
   for (;;) {

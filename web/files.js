@@ -10,6 +10,10 @@ import { byId } from "./dom.js";
  * @typedef {DataTransferItem & { getAsFileSystemHandle?: () => Promise<FileSystemHandle | null> }} WithHandle
  */
 
+/** What opens files, and what takes those of the dialog that is open. @type {(files: NamedFile[]) => void} */
+let opener = () => {};
+let taker = opener;
+
 /**
  * @param {(files: NamedFile[]) => void} open
  * @param {(url: string) => void} openUrl
@@ -17,11 +21,12 @@ import { byId } from "./dom.js";
  */
 export function listen(open, openUrl, fail) {
   const picker = byId("files", HTMLInputElement);
+  opener = open;
   picker.addEventListener("change", () => {
     const files = [...(picker.files ?? [])].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
     // The same file may be chosen again.
     picker.value = "";
-    if (files.length) open(files);
+    if (files.length) taker(files);
   });
 
   const root = document.documentElement;
@@ -64,8 +69,9 @@ export function listen(open, openUrl, fail) {
   });
 }
 
-/** Shows the file dialog. */
-export function pick() {
+/** Shows the file dialog. @param {(files: NamedFile[]) => void} [take] what to do with the files; opens them otherwise */
+export function pick(take = opener) {
+  taker = take;
   byId("files", HTMLInputElement).click();
 }
 

@@ -140,7 +140,8 @@ async function reload() {
   } catch {
     const name = limn.state?.model?.name ?? "";
     const lines = ["The browser lets a page read a chosen file only until it changes. Files that were dropped can be read again."];
-    cards.show({ id: "reload", kind: "error", title: `${name} has changed on disk: open it again`, lines, ask: name });
+    const again = () => files.pick((list) => engine.send({ type: "reload", files: list }));
+    cards.show({ id: "read", kind: "error", title: `${name} has changed on disk: open it again`, lines, ask: name }, again);
   }
 }
 

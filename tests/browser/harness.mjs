@@ -37,18 +37,24 @@ const MIME = {
 /**
  * Serves the built page on a free port, compressed with brotli at its highest level as a good host would.
  * `sent` lists every body with its size on the wire, whoever asked for it: pages and workers alike. `extra` holds files
- * that are not part of the page, by path.
+ * that are not part of the page, by path, or functions that answer themselves. With `cors` other sites may read it all.
+ * @param {{ cors?: boolean }} [options]
  */
-export async function serveSite() {
+export async function serveSite({ cors = false } = {}) {
   if (!existsSync(join(SITE, "index.html"))) throw new Error(`there is no page at ${SITE}: build it with cargo xtask dist`);
   /** @type {{ path: string, status: number, bytes: number }[]} */
   const sent = [];
-  /** @type {Map<string, Buffer | string>} */
+  /** @type {Map<string, Buffer | string | ((response: import("node:http").ServerResponse) => void)>} */
   const extra = new Map();
   const server = createServer(async (request, response) => {
     const path = decodeURIComponent(new URL(request.url ?? "/", "http://localhost").pathname);
     const file = normalize(join(SITE, path === "/" ? "index.html" : path));
     const own = extra.get(path);
+    if (cors) response.setHeader("access-control-allow-origin", "*");
+    if (typeof own === "function") {
+      own(response);
+      return;
+    }
     let body = own === undefined ? undefined : Buffer.from(own);
     let packed = body;
     if (body === undefined && file.startsWith(normalize(SITE) + sep) && existsSync(file)) {

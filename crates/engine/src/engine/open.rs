@@ -32,6 +32,15 @@ pub(super) struct Opening {
     rest: Vec<Command>,
     /// What the surroundings were asked with.
     turn: u32,
+    /// A file of the right name that was not the one: given once more, it is opened as a new model.
+    refused: Option<Stamp>,
+}
+
+impl Opening {
+    /// Whether an address is being read: something comes without anybody doing anything.
+    pub(super) fn comes(&self) -> bool {
+        matches!(self.source, Source::Url(_))
+    }
 }
 
 /// Whether two names mean the same file: folders and capitals aside.
@@ -99,9 +108,7 @@ impl Engine {
                         commands = rest;
                         continue;
                     }
-                    self.turn += 1;
-                    let opening = Opening { source: source.clone(), document: Some(document), rest, turn: self.turn };
-                    self.opening = Some(opening);
+                    self.wait_for(source.clone(), Some(document), rest);
                     return self.ask(&source);
                 }
             }
@@ -134,9 +141,13 @@ impl Engine {
     /// A command asked for a source.
     pub(super) fn fetch_source(&mut self, source: Source) {
         self.stop_opening_quietly();
-        self.turn += 1;
-        self.opening = Some(Opening { source: source.clone(), document: None, rest: Vec::new(), turn: self.turn });
+        self.wait_for(source.clone(), None, Vec::new());
         self.ask(&source);
+    }
+
+    fn wait_for(&mut self, source: Source, document: Option<Document>, rest: Vec<Command>) {
+        self.turn += 1;
+        self.opening = Some(Opening { source, document, rest, turn: self.turn, refused: None });
     }
 
     /// The file that dropped ones should be searched for: one that a link or `text` names, or, to read it `again`, the
@@ -160,11 +171,18 @@ impl Engine {
     pub(super) fn open_parcel(&mut self, parcel: Parcel) {
         // The file that a link waits for?
         if let Some(opening) = self.opening.take() {
-            let wanted = matches!(&opening.source, Source::File { name, .. } if same_file(name, &parcel.name));
+            let stamp = Stamp { size: parcel.size, hash: parcel.hash };
+            let wanted = matches!(&opening.source, Source::File { name, .. } if same_file(name, &parcel.name))
+                && opening.refused != Some(stamp);
             match (wanted, opening.document) {
                 (true, Some(mut document)) => {
                     if self.read_into(&mut document, parcel, &opening.source) {
                         self.go_on(document, &opening.rest, None);
+                    } else if document.apply(&Command::Open(opening.source.clone()), false).is_ok() {
+                        // The right one is still waited for.
+                        let Opening { source, rest, turn, .. } = opening;
+                        self.opening =
+                            Some(Opening { source, document: Some(document), rest, turn, refused: Some(stamp) });
                     }
                     return;
                 }

@@ -10,6 +10,7 @@ use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
 
 use super::Engine;
+use super::open::Opening;
 use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
 use crate::{controls, report};
 use limn_document::words::sentence;
@@ -173,7 +174,11 @@ impl Engine {
             levels: report::ruler(document),
             shown,
             times: self.times,
-            busy: self.making.is_some() || self.told.is_some() || self.tween.is_some() || self.making_room.is_some(),
+            busy: self.making.is_some()
+                || self.told.is_some()
+                || self.tween.is_some()
+                || self.making_room.is_some()
+                || self.opening.as_ref().is_some_and(Opening::comes),
             values: controls::values(document),
             disabled: controls::disabled(document, facts.is_some_and(|f| f.stats.boundary_loops > 0)),
             groups: self.groups(),
