@@ -17,11 +17,8 @@ export function say(text) {
 export function show(card, ask = pick) {
   const cards = byId("cards");
   const id = `card-${card.id}`;
-  const old = document.getElementById(id);
-  if (!card.title && !card.lines.length) {
-    old?.remove();
-    return;
-  }
+  document.getElementById(id)?.remove();
+  if (!card.title && !card.lines.length) return;
   const made = el("article", { id, className: `card ${card.kind}`, role: card.kind === "error" ? "alert" : "group" },
     el("h2", {}, card.title),
     ...(card.lines.length > 1 ? [el("ul", {}, ...card.lines.map((line) => el("li", {}, line)))] : card.lines.map((line) => el("p", {}, line))),
@@ -30,8 +27,7 @@ export function show(card, ask = pick) {
       el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => made.remove() }, "Dismiss"),
     ),
   );
-  if (old) old.replaceWith(made);
-  else cards.prepend(made);
+  cards.prepend(made);
   if (card.kind === "note") say(card.title);
 }
 

@@ -164,7 +164,7 @@ const flipTheme = () => {
 /** @type {Record<import("./protocol.js").Key["page"], () => void>} */
 const actions = {
   "": () => {},
-  open: files.pick,
+  open: () => files.pick(),
   help: () => panel.flip("help"),
   copy: () => void copy(),
   panel: () => panel.toggle(),

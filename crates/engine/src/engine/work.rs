@@ -125,6 +125,15 @@ impl Engine {
             engine.document.mesh().is_some_and(|m| Arc::ptr_eq(m, shown.refined.mesh()))
                 && engine.document.plan().is_some_and(|p| p == shown.plan)
         };
+        // The step that led away is taken back, so that Undo does not lead there again.
+        let view = self.document.view().clone();
+        if self.document.run("undo").is_ok() {
+            if fits(self) {
+                return self.sync();
+            }
+            let _ = self.document.run("redo");
+            *self.document.view_mut() = view;
+        }
         let rule = match shown.plan.boundary {
             limn_mesh::Boundary::EdgeOnly => "edge-only",
             limn_mesh::Boundary::EdgeAndCorner => "edge-and-corner",
