@@ -8,6 +8,9 @@ import { pick } from "./files.js";
 /** @typedef {import("./protocol.js").Card} Card */
 /** @typedef {import("./protocol.js").Progress} Progress */
 
+/** Notes that were dismissed: the same one again, as when a scheme is chosen to and fro, would only be in the way. @type {Set<string>} */
+const dismissed = new Set();
+
 /** @param {string} text */
 export function say(text) {
   setText(byId("live"), text);
@@ -19,12 +22,17 @@ export function show(card, ask = pick) {
   const id = `card-${card.id}`;
   document.getElementById(id)?.remove();
   if (!card.title && !card.lines.length) return;
+  const words = [card.title, ...card.lines].join("\n");
+  if (card.kind === "note" && !card.ask && dismissed.has(words)) return;
   const made = el("article", { id, className: `card ${card.kind}`, role: card.kind === "error" ? "alert" : "group" },
     el("h2", {}, card.title),
     ...(card.lines.length > 1 ? [el("ul", {}, ...card.lines.map((line) => el("li", {}, line)))] : card.lines.map((line) => el("p", {}, line))),
     el("div", { className: "row" },
       ...(card.ask ? [el("button", { type: "button", className: "main", onclick: () => ask() }, `Open ${card.ask}`)] : []),
-      el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => made.remove() }, "Dismiss"),
+      el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => {
+        dismissed.add(words);
+        made.remove();
+      } }, "Dismiss"),
     ),
   );
   cards.prepend(made);
@@ -33,8 +41,8 @@ export function show(card, ask = pick) {
 
 /** Dismisses the newest card. @returns {boolean} whether there was one */
 export function dismiss() {
-  const newest = byId("cards").firstElementChild;
-  newest?.remove();
+  const newest = byId("cards").querySelector("button.dismiss");
+  if (newest instanceof HTMLButtonElement) newest.click();
   return newest !== null;
 }
 

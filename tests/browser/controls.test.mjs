@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, beforeEach, afterEach, describe, test } from "node:test";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { content, cmd, download, drop, launch, picture, ready, scratch, serveSite, state, tidy, visit } from "./harness.mjs";
+import { cards, content, cmd, download, drop, launch, picture, ready, scratch, serveSite, state, tidy, visit } from "./harness.mjs";
 
 const CUBE = `o box
 v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
@@ -84,6 +84,31 @@ describe("the controls", () => {
     await ready(page, (state) => state.shown.scheme === "loop");
     assert.equal((await state(page)).shown.faces, 12 * 16, "six quads are twelve triangles");
     assert.notDeepEqual((await picture(page)).data, before.data);
+  });
+
+  test("a note that was dismissed is not said again for the same model", async () => {
+    const scheme = async (/** @type {RegExp} */ name, /** @type {string} */ id) => {
+      await page.getByRole("radio", { name }).click();
+      await ready(page, (state, id) => state.shown.scheme === id, id);
+    };
+    await scheme(/Loop/, "loop");
+    assert.match((await cards(page)).map((card) => card.text).join("\n"), /^cube: 1 note \| .*triang/);
+    await scheme(/Catmull/, "catmull-clark");
+    assert.deepEqual(await cards(page), [], "what is over is taken away");
+    await scheme(/Loop/, "loop");
+    assert.equal((await cards(page)).length, 1, "nobody has dismissed it yet");
+    await page.keyboard.press("Escape");
+    assert.deepEqual(await cards(page), []);
+    await scheme(/Catmull/, "catmull-clark");
+    await scheme(/Loop/, "loop");
+    await picture(page);
+    assert.deepEqual(await cards(page), []);
+    await page.keyboard.press("b");
+    await page.locator("#tab-report").click();
+    assert.match((await page.locator("#pane-report").textContent()) ?? "", /triang/, "the report says it all the same");
+    await cmd(page, "open builtin:dodecahedron");
+    await cmd(page, "scheme loop");
+    await page.waitForFunction(() => /dodecahedron: 1 note/.test(document.getElementById("cards")?.textContent ?? ""));
   });
 
   test("undo and redo walk through what was done, by button and by key", async () => {

@@ -24,17 +24,28 @@ try {
         console.log(path);
       };
       await save("first");
+      await page.locator("#model").click();
+      await save("models");
+      await page.keyboard.press("Escape");
       await page.locator("#panel-toggle").click();
-      await page.waitForTimeout(300);
-      await save("panel");
-      await page.locator("#panel-toggle").click({ force: true });
+      for (const tab of ["view", "surface", "report", "help", "console"]) {
+        await page.locator(`#tab-${tab}`).click();
+        await page.waitForTimeout(300);
+        await save(`panel-${tab}`);
+      }
       await cmd(page, "open builtin:pawn");
       await ready(page, (state) => state.model.name.includes("pawn"));
+      await cmd(page, "info");
+      await cmd(page, "levle 2");
+      await save("console");
+      await page.locator("#tab-console").focus();
+      await page.keyboard.press("Escape");
       await cmd(page, "level 2");
       await ready(page, (state) => state.shown.level === 2);
       await cmd(page, "view edges=on");
       await page.waitForTimeout(200);
       await save("edges");
+      await cmd(page, "view edges=off cage=on");
       await cmd(page, "level 100");
       await page.waitForSelector("#cards .card");
       await save("card");
