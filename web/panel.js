@@ -191,7 +191,7 @@ export class Panel {
       el("h2", {}, count ? "What the file held" : ""),
       count
         ? el("ul", {}, ...state.report.map(({ text, kind }) => el("li", { className: kind }, text)))
-        : el("p", {}, "Everything in the file was used, and nothing had to be repaired."),
+        : el("p", {}, state.model?.builtin ? "Nothing had to be repaired." : "Everything in the file was used, and nothing had to be repaired."),
     );
   }
 

@@ -383,11 +383,7 @@ impl Engine {
     }
 
     fn refuse(&self, command: &str, error: &CommandError) {
-        let mut text = error.to_string();
-        if let Some(first) = text.get_mut(..1) {
-            first.make_ascii_uppercase();
-        }
-        self.log(command, text, false);
+        self.log(command, limn_document::words::sentence(&error.to_string()), false);
     }
 
     /// What a command asks of the host.
