@@ -61,8 +61,14 @@ describe("the panel", () => {
     await page.waitForFunction(() => document.querySelector("#cards .card.error"));
     assert.match((await cards(page))[0]?.text ?? "", /^level 100/, "no panel, so a card says it");
     assert.deepEqual(fetched(), []);
+    // Styles that come late hold the panel back.
+    await page.route("**/web/panel.css", async (route) => {
+      await new Promise((done) => setTimeout(done, 400));
+      await route.continue();
+    });
     await page.keyboard.press("/");
     await page.waitForFunction(() => document.activeElement?.id === "command");
+    assert.equal((await page.evaluate(() => Reflect.get(window, "firstLook"))).width, 328, "styled when it is first seen");
     const lines = await page.locator("#log li code").allTextContents();
     assert.deepEqual(lines, ["level 2", "level 100"]);
     assert.ok(await page.locator("#log li").nth(1).evaluate((line) => line.classList.contains("error")));

@@ -224,6 +224,13 @@ describe("a source", () => {
     const green = new PNG({ width: 4, height: 4 });
     for (let i = 0; i < green.data.length; i += 4) green.data.set([10, 220, 20, 255], i);
     await writeFile(join(folder, "models/textures/green.png"), PNG.sync.write(green));
+    // Two others of that name: only the path tells which is meant.
+    const red = new PNG({ width: 4, height: 4 });
+    for (let i = 0; i < red.data.length; i += 4) red.data.set([220, 20, 10, 255], i);
+    for (const old of ["a-old", "z-old"]) {
+      await mkdir(join(folder, old));
+      await writeFile(join(folder, old, "green.png"), PNG.sync.write(red));
+    }
     await writeFile(join(folder, "models/crate.mtl"), "newmtl paint\nKd 1 1 1\nmap_Kd textures/green.png\n");
     const textured = (/** @type {string} */ text) => text
       .replace("o box\n", "mtllib crate.mtl\no box\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n")
