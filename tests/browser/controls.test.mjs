@@ -160,6 +160,33 @@ describe("the controls", () => {
     assert.ok(Math.abs(again - framed) < 0.1 * framed, `framed: ${again}, before: ${framed}`);
   });
 
+  test("edges are the polygons', without the diagonals of triangles", async () => {
+    await cmd(page, "level 0");
+    await cmd(page, "view camera=front projection=orthographic");
+    await ready(page, (state) => state.shown.level === 0 && /front/.test(state.link));
+    const plain = await picture(page);
+    await page.keyboard.press("w");
+    await page.waitForTimeout(100);
+    const edged = await picture(page);
+    // One square from the front: its diagonals, crossed at eight places, look as they did, and its four sides do not.
+    const differs = (/** @type {number} */ x, /** @type {number} */ y) =>
+      Math.abs((plain.data[4 * (y * plain.width + x)] ?? 0) - (edged.data[4 * (y * plain.width + x)] ?? 0)) > 8;
+    let [left, right, top, bottom] = [plain.width, 0, plain.height, 0];
+    for (let y = 0; y < plain.height; y += 1) {
+      for (let x = 0; x < plain.width; x += 1) {
+        if (differs(x, y)) [left, right, top, bottom] = [Math.min(left, x), Math.max(right, x), Math.min(top, y), Math.max(bottom, y)];
+      }
+    }
+    assert.ok(right - left > 100 && Math.abs(right - left - (bottom - top)) < 4, `a square: ${[left, right, top, bottom]}`);
+    for (const t of [0.2, 0.35, 0.5, 0.65, 0.8]) {
+      for (const u of [t, 1 - t]) {
+        for (let shift = -3; shift <= 3; shift += 1) {
+          assert.ok(!differs(Math.round(left + t * (right - left)) + shift, Math.round(top + u * (bottom - top))), `an edge at ${t}, ${u}`);
+        }
+      }
+    }
+  });
+
   test("the mouse orbits, pans and zooms, and the link follows", async () => {
     const before = await picture(page);
     const link = (await state(page)).link;

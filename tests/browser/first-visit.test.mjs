@@ -54,6 +54,23 @@ describe("a first visit", () => {
     assert.ok(found.share <= 0.001, `${(100 * found.share).toFixed(3)}% of the pixels differ`);
   });
 
+  for (const renderer of RENDERERS) {
+    test(`is lit from above on ${renderer}`, async () => {
+      const page = await visit(browser, site.url, { renderer, hash: "#1;open+builtin:icosahedron;scheme+loop;level+3;view+camera=front" });
+      const png = await picture(page);
+      // Down the middle of a ball: from its upper end to its lower one.
+      const column = Array.from({ length: png.height }, (_, y) => png.data[4 * (y * png.width + (png.width >> 1)) + 1] ?? 0);
+      const [first, last] = [column.findIndex((g) => g > 60), column.findLastIndex((g) => g > 60)];
+      assert.ok(last - first > png.height / 3, `a ball from ${first} to ${last}`);
+      const mean = (/** @type {number} */ from, /** @type {number} */ to) => {
+        const part = column.slice(Math.round(first + from * (last - first)), Math.round(first + to * (last - first)));
+        return part.reduce((sum, g) => sum + g, 0) / part.length;
+      };
+      assert.ok(mean(0.1, 0.4) > mean(0.6, 0.9) + 20, `${mean(0.1, 0.4)} above, ${mean(0.6, 0.9)} below`);
+      await page.context().close();
+    });
+  }
+
   test("chooses a backend by itself", async () => {
     const page = await visit(browser, site.url);
     assert.equal(await page.evaluate(() => Reflect.get(window, "limn").renderer), "webgpu");
