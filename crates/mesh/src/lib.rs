@@ -49,7 +49,7 @@ pub use report::{Note, Report};
 pub use scheme::{Accepts, Boundary, Domain, Entry, Info, Param, Params, SCHEMES, scheme};
 pub use shapes::{SHAPES, Shape, shape};
 pub use soup::{NONE, Soup};
-pub use split::Split;
+pub use split::{FaceKind, Split};
 pub use topology::{Connectivity, Counts, Topology};
 pub use triangulate::{triangulate, triangulate_soup};
 pub use weld::{Weld, bounds};

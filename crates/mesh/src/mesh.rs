@@ -37,6 +37,7 @@ pub struct Mesh {
     pub weld_class: Vec<u32>,
     /// Whether some part has one side only (it was cut to be oriented).
     pub one_sided: bool,
+    counts: Counts,
 }
 
 /// Texture coordinates as a second vertex array on the same half-edges: where two faces disagree about an edge, the twin
@@ -47,6 +48,8 @@ pub struct UvChannel {
     pub topology: Topology,
     /// One (u, v) for each of them, v up.
     pub values: Vec<[f32; 2]>,
+    /// Counts of the half-edges.
+    pub counts: Counts,
 }
 
 /// Why polygons are no mesh.
@@ -140,6 +143,7 @@ impl Mesh {
         };
         let uv = (!soup.uvs.is_empty()).then(|| seams(soup, &topology, &faces, &m.mate));
         let one_sided = !m.one_sided.is_empty();
+        let counts = topology.counts();
         let mesh = Mesh {
             topology,
             positions,
@@ -150,13 +154,14 @@ impl Mesh {
             face_source: faces.source,
             weld_class,
             one_sided,
+            counts,
         };
         Ok((mesh, Report { notes }))
     }
 
     /// Counts of level 0.
     pub fn counts(&self) -> Counts {
-        self.topology.counts()
+        self.counts
     }
 
     /// Whether every face is a triangle.
@@ -189,7 +194,7 @@ impl Mesh {
             components += 1;
         }
         let mut boundary_loops = 0u64;
-        let mut seen = vec![false; t.boundary as usize];
+        let mut seen = vec![false; t.boundary.len()];
         for h in 0..t.half_edges() {
             let mut h = h;
             let mut fresh = false;
@@ -201,7 +206,7 @@ impl Mesh {
             boundary_loops += u64::from(fresh);
         }
         // Sum over parts of 2 - 2g - b = chi.
-        let twice = 2 * i64::from(components) - boundary_loops as i64 - t.counts().euler();
+        let twice = 2 * i64::from(components) - boundary_loops as i64 - self.counts.euler();
         let genus = (!self.one_sided).then_some((twice / 2) as u64);
         Stats { boundary_loops, components: components.into(), genus, bounds: bounds(&self.positions) }
     }
@@ -412,5 +417,6 @@ fn seams(soup: &Soup, t: &Topology, faces: &Faces, mate: &[u32]) -> UvChannel {
     // Fans of the cut half-edges are the texture vertices; all fans of one vertex begin as one class.
     let (topology, _) = Topology::assemble(faces.offsets.clone(), t.origins(), t.vertices() as usize, &cut);
     let values = topology.vertex_half_edge.iter().map(|&h| value(h as usize)).collect();
-    UvChannel { topology, values }
+    let counts = topology.counts();
+    UvChannel { topology, values, counts }
 }

@@ -117,7 +117,13 @@ impl Plan {
 
     /// What rules have to know of the plan, and of the sharp vertices.
     pub(crate) fn tags<'a>(&self, sharp: &'a [bool]) -> Tags<'a> {
-        Tags { boundary: self.boundary, sharp, params: self.params.of(&self.scheme.info) }
+        Tags { boundary: self.boundary, sharp, lone: &[], params: self.params.of(&self.scheme.info) }
+    }
+
+    /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
+    pub(crate) fn kept(&self, mesh: &Mesh) -> Vec<bool> {
+        let (t, tags) = (&mesh.topology, self.tags(&mesh.sharp));
+        (0..t.vertices()).map(|v| tags.is_sharp(t, v)).collect()
     }
 
     /// The split that the plan uses on `mesh`.
@@ -125,7 +131,7 @@ impl Plan {
     /// # Errors
     /// [`RefineError::NeedsTriangles`].
     pub fn split(&self, mesh: &Mesh) -> Result<Split, RefineError> {
-        self.scheme.info.split(mesh.is_triangles()).ok_or_else(|| {
+        self.scheme.info.split(mesh.is_triangles(), self.boundary).ok_or_else(|| {
             let t = &mesh.topology;
             let odd = (0..t.faces()).find(|&f| t.face_half_edges(f).len() != 3).unwrap_or(0);
             RefineError::NeedsTriangles {
@@ -140,9 +146,9 @@ impl Plan {
 /// Counts after `level` steps of `split`, and those one step before.
 fn counts_at(split: Split, mut c: Counts, level: u32) -> Option<(Counts, Counts)> {
     let mut before = c;
-    for _ in 0..level {
+    for step in 0..level {
         before = c;
-        c = split.counts(c)?;
+        c = split.at(step).counts(c)?;
     }
     Some((c, before))
 }
@@ -161,13 +167,17 @@ fn prediction(mesh: &Mesh, split: Split, level: u32) -> Option<Prediction> {
     // Result: points, corners. Peak beside it: the parent's points and, from level 1 on, its stored half-edges.
     let track = |c: Counts, b: Counts, value: u128| {
         let (c, b) = ((c.vertices, c.corners), (b.vertices, b.corners));
-        let stored = if level > 1 { 8 * u128::from(b.1) + 4 * u128::from(b.0) } else { 0 };
+        let words = if split.stores() { 5 } else { 2 };
+        let stored = if level > 1 { 4 * words * u128::from(b.1) + 4 * u128::from(b.0) } else { 0 };
         let parent = if level > 0 { value * u128::from(b.0) } else { 0 };
         value * u128::from(c.0) + 4 * u128::from(c.1) + parent + stored
     };
     let mut bytes = track(counts, before, 12 + wide);
-    if let Some(uv) = &mesh.uv {
-        let (c, b) = counts_at(split, uv.topology.counts(), level)?;
+    if split.stores() {
+        // Faces are listed with where they begin and where they came from.
+        bytes += 8 * u128::from(counts.faces);
+    } else if let Some(uv) = &mesh.uv {
+        let (c, b) = counts_at(split, uv.counts, level)?;
         bytes += track(c, b, 16);
     }
     Some(Prediction { counts, bytes: bytes.min(u128::from(u64::MAX)) as u64 })
@@ -208,18 +218,21 @@ impl Job {
     pub fn new(mesh: Arc<Mesh>, plan: Plan, budget: u64) -> Result<Job, RefineError> {
         let split = admit(&mesh, &plan, budget)?;
         let mut total = 0;
-        let tracks =
-            [(Some(mesh.counts()), !mesh.colors.is_empty()), (mesh.uv.as_ref().map(|u| u.topology.counts()), true)];
+        let uv = mesh.uv.as_ref().filter(|_| !split.stores());
+        let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (uv.map(|u| u.counts), true)];
         for (i, (counts, wide)) in tracks.into_iter().enumerate() {
             let Some(mut c) = counts else { continue };
             for level in 1..=plan.level {
-                let Some(next) = split.counts(c) else { break };
+                let Some(next) = split.at(level - 1).counts(c) else { break };
                 let values = u64::from(i == 0) + u64::from(wide);
-                total += values * next.vertices + c.faces + if level < plan.level { c.vertices } else { 0 };
+                total += values * next.vertices;
+                if !split.stores() {
+                    total += c.faces + if level < plan.level { c.vertices } else { 0 };
+                }
                 c = next;
             }
         }
-        let (geometry, uv) = (Track::new(&mesh, false, plan.level), Track::new(&mesh, true, plan.level));
+        let (geometry, uv) = (Track::new(&mesh, false, &plan, split), Track::new(&mesh, true, &plan, split));
         Ok(Job { mesh, plan, split, geometry, uv, rows: 0, total: total.max(1) })
     }
 
@@ -261,13 +274,15 @@ impl Job {
                 .map(|u| UvValues { values: u.values.clone(), corners: u.topology.origins().to_vec() });
             return Refined {
                 level,
-                counts: t.counts(),
+                counts: self.mesh.counts(),
                 points: self.mesh.positions.clone(),
                 faces,
                 uv,
                 colors: self.mesh.colors.clone(),
                 parent_ranges: None,
                 vertex_parents: t.vertices(),
+                source: Vec::new(),
+                kinds: Vec::new(),
                 split: self.split,
                 mesh: self.mesh,
             };
@@ -276,19 +291,25 @@ impl Job {
         let (v, f) = (before.vertices as u32, before.faces as u32);
         Refined {
             level,
-            counts: self.split.counts(before).unwrap_or_default(),
+            counts: self.geometry.counts,
             points: self.geometry.points.unwrap_or_default(),
             faces: match self.split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
-                Split::Triangle => Faces::Triangles(self.geometry.corners),
+                Split::Triangle | Split::Sqrt3 { .. } => Faces::Triangles(self.geometry.corners),
+                Split::Dual { .. } => {
+                    Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
+                }
             },
-            uv: self.mesh.uv.is_some().then(|| UvValues {
+            uv: (self.mesh.uv.is_some() && !self.split.stores()).then(|| UvValues {
                 values: self.uv.wide.iter().map(|v| [v[0], v[1]]).collect(),
                 corners: self.uv.corners,
             }),
             colors: self.geometry.wide,
             parent_ranges: (self.split == Split::Quad).then_some([v, v + f]),
-            vertex_parents: v,
+            // Every edge of a stored level is one of its own.
+            vertex_parents: if self.split.stores() { u32::MAX } else { v },
+            source: self.geometry.source,
+            kinds: self.geometry.kinds,
             split: self.split,
             mesh: self.mesh,
         }
@@ -315,12 +336,16 @@ pub fn evaluate<const N: usize>(
     mut inspect: impl FnMut(&Level<'_>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
     let split = admit(mesh, &plan, u64::MAX)?;
-    let tags = plan.tags(&mesh.sharp);
+    let kept = if matches!(split, Split::Sqrt3 { .. }) { plan.kept(mesh) } else { Vec::new() };
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
     for step in 0..plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
         inspect(&level);
+        let split = split.at(step);
+        let lone = split.lone(&level);
+        let sharp = if kept.is_empty() { &mesh.sharp } else { &kept };
+        let tags = Tags { lone: &lone, ..plan.tags(sharp) };
         let mut new = vec![[0.0; N]; split.children(&level) as usize];
         let mut take = |child: u32, row: &[(Source, f64)]| {
             new[child as usize] = weigh(row, |s| match s {

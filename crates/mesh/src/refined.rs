@@ -9,7 +9,7 @@
 //! number. Limit: normals are those of the faces around a vertex, not of the limit surface.
 
 use crate::mesh::Mesh;
-use crate::split::Split;
+use crate::split::{FaceKind, Split};
 use crate::topology::{Connectivity, Counts};
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ pub struct Refined {
     pub points: Vec<[f32; 3]>,
     /// The faces.
     pub faces: Faces,
-    /// Texture coordinates, if the mesh has any.
+    /// Texture coordinates, if the mesh has any and the split carries them.
     pub uv: Option<UvValues>,
     /// Linear RGBA, one a vertex; empty if the mesh has none.
     pub colors: Vec<[f32; 4]>,
@@ -90,6 +90,10 @@ pub struct Refined {
     pub parent_ranges: Option<[u32; 2]>,
     /// Vertices below this were the parent level's (all of them at level 0).
     pub vertex_parents: u32,
+    /// What each face was made from, after a dual split; else empty.
+    pub kinds: Vec<FaceKind>,
+    /// The mesh's face behind each face; empty where that is arithmetic.
+    pub(crate) source: Vec<u32>,
     pub(crate) split: Split,
     pub(crate) mesh: Arc<Mesh>,
 }
@@ -97,6 +101,9 @@ pub struct Refined {
 impl Refined {
     /// The soup's face that face `f` of this level came from. Cost: the level.
     pub fn face_source(&self, f: u32) -> u32 {
+        if let Some(&source) = self.source.get(f as usize) {
+            return self.mesh.face_source[source as usize];
+        }
         let base = &self.mesh.topology;
         let mut f = f;
         let mut corners = u64::from(base.half_edges()) << (2 * self.level);
@@ -107,6 +114,7 @@ impl Refined {
                 Split::Quad => f >> 2,
                 Split::Triangle if u64::from(f) < corners => f / 3,
                 Split::Triangle => f - corners as u32,
+                _ => f,
             };
         }
         self.mesh.face_source[f as usize]

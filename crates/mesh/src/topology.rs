@@ -47,6 +47,8 @@ pub trait Connectivity {
     fn half_edges(&self) -> u32;
     /// Number of half-edges without a twin.
     fn boundary_half_edges(&self) -> u32;
+    /// The half-edge of a boundary rank.
+    fn boundary_half_edge(&self, rank: u32) -> u32;
     /// The half-edges of face `f`, in order.
     fn face_half_edges(&self, f: u32) -> Range<u32>;
     /// The face left of `h`.
@@ -85,14 +87,28 @@ pub trait Connectivity {
         }
     }
 
-    /// Counts of this level.
+    /// Counts of this level. Cost: linear.
     fn counts(&self) -> Counts {
+        let mut rim = [0; 3];
+        for r in 0..self.boundary_half_edges() {
+            let mut faces = 0;
+            self.turn(self.origin(self.boundary_half_edge(r)), |_| faces += 1);
+            rim[faces.min(3) - 1] += 1;
+        }
+        let is_digon = |&v: &u32| {
+            let h = self.vertex_half_edge(v);
+            let t = self.twin(self.prev(h));
+            !is_boundary(self.twin(h)) && !is_boundary(t) && self.twin(self.prev(t)) == h
+        };
+        let digons = (0..self.vertices()).filter(is_digon).count() as u64;
         Counts {
             vertices: self.vertices().into(),
             edges: self.edges().into(),
             faces: self.faces().into(),
             corners: self.half_edges().into(),
             boundary: self.boundary_half_edges().into(),
+            rim,
+            digons,
         }
     }
 }
@@ -110,6 +126,10 @@ pub struct Counts {
     pub corners: u64,
     /// Half-edges on a boundary.
     pub boundary: u64,
+    /// Boundary vertices of one face, of two, and of more. What dual splits make of a rim depends on them.
+    pub rim: [u64; 3],
+    /// Inner vertices of two faces.
+    pub digons: u64,
 }
 
 impl Counts {
@@ -129,7 +149,7 @@ pub struct Topology {
     pub(crate) face: Vec<u32>,
     pub(crate) vertex_half_edge: Vec<u32>,
     pub(crate) edge_half_edge: Vec<u32>,
-    pub(crate) boundary: u32,
+    pub(crate) boundary: Vec<u32>,
 }
 
 impl Topology {
@@ -220,12 +240,12 @@ impl Topology {
         let mut twin = vec![0; half_edges];
         let mut edge = vec![0; half_edges];
         let mut edge_half_edge = Vec::with_capacity(half_edges / 2);
-        let mut boundary = 0;
+        let mut boundary = Vec::new();
         for h in 0..half_edges as u32 {
             let t = mate[h as usize];
             if t == UNSET {
-                twin[h as usize] = !boundary;
-                boundary += 1;
+                twin[h as usize] = !(boundary.len() as u32);
+                boundary.push(h);
             } else {
                 twin[h as usize] = t;
             }
@@ -260,7 +280,11 @@ impl Connectivity for Topology {
     }
     #[inline(always)]
     fn boundary_half_edges(&self) -> u32 {
-        self.boundary
+        self.boundary.len() as u32
+    }
+    #[inline(always)]
+    fn boundary_half_edge(&self, rank: u32) -> u32 {
+        self.boundary[rank as usize]
     }
     #[inline(always)]
     fn face_half_edges(&self, f: u32) -> Range<u32> {
@@ -337,6 +361,7 @@ pub fn validate(c: &impl Connectivity) -> Result<(), Broken> {
             let r = boundary_rank(t);
             check(r < c.boundary_half_edges(), "rank is in range", "half-edge", h)?;
             check(!ranks[r as usize], "ranks are distinct", "rank", r)?;
+            check(c.boundary_half_edge(r) == h, "a rank names its half-edge", "rank", r)?;
             ranks[r as usize] = true;
             check(c.edge_half_edge(c.edge(h)) == h, "a boundary half-edge owns its edge", "half-edge", h)?;
         } else {

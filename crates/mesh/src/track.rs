@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 use crate::refine::Plan;
 use crate::scheme::{Boundary, Tags};
 use crate::sink::{Cursor, Source};
-use crate::split::{Level, QuadLevel, Split, TriangleLevel, on};
+use crate::split::{FaceKind, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
 
 /// Half-edges of a level between the first and the last.
@@ -20,13 +20,17 @@ use crate::topology::{Connectivity, Counts, Topology};
 pub(crate) enum Owned {
     Quads(QuadLevel),
     Triangles(TriangleLevel),
+    Stored(Topology),
 }
 
 impl Owned {
+    /// The level below, to be filled. A stored one comes whole.
     pub(crate) fn below(parent: &Level<'_>, split: Split) -> Owned {
-        match split {
-            Split::Quad => Owned::Quads(QuadLevel::below(parent)),
-            Split::Triangle => Owned::Triangles(TriangleLevel::below(parent)),
+        match (split, parent) {
+            (Split::Quad, _) => Owned::Quads(QuadLevel::below(parent)),
+            (Split::Triangle, _) => Owned::Triangles(TriangleLevel::below(parent)),
+            (_, Level::Base(t)) => Owned::Stored(split.cut(t).connect(t, split, split.children(*t))),
+            _ => unreachable!("stored levels come of stored levels"),
         }
     }
 
@@ -34,6 +38,7 @@ impl Owned {
         match self {
             Owned::Quads(q) => Level::Quads(q),
             Owned::Triangles(t) => Level::Triangles(t),
+            Owned::Stored(t) => Level::Base(t),
         }
     }
 
@@ -53,6 +58,7 @@ impl Owned {
                     t.fill(*c, from, to);
                     t.fill_vertices(*c, old_from, old_to);
                 }
+                Owned::Stored(_) => {}
             }
             *quota -= (end - *at) as usize;
             *at = end;
@@ -77,7 +83,18 @@ pub(crate) struct Track {
     new_wide: Vec<[f32; 4]>,
     pub(crate) stage: Stage,
     pub(crate) corners: Vec<u32>,
+    /// Where the last level's faces begin, what they were made from, and the mesh's face behind each face of `level`; of
+    /// stored levels.
+    pub(crate) offsets: Vec<u32>,
+    pub(crate) kinds: Vec<FaceKind>,
+    pub(crate) source: Vec<u32>,
+    /// Of `level`, and of the one before it.
+    pub(crate) counts: Counts,
     pub(crate) before: Counts,
+    /// Vertices of level 0 that stay, corners among them, where later levels cannot tell.
+    corner: Vec<bool>,
+    /// Corners with two images, of `level`.
+    lone: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,13 +107,13 @@ pub(crate) enum Stage {
 }
 
 impl Track {
-    pub(crate) fn new(mesh: &Mesh, uv: bool, levels: u32) -> Track {
+    pub(crate) fn new(mesh: &Mesh, uv: bool, plan: &Plan, split: Split) -> Track {
         let wide = match (&mesh.uv, uv) {
             (Some(channel), true) => channel.values.iter().map(|v| [v[0], v[1], 0.0, 0.0]).collect(),
             (None, true) => Vec::new(),
             (_, false) => mesh.colors.clone(),
         };
-        let idle = levels == 0 || (uv && mesh.uv.is_none());
+        let idle = plan.level == 0 || (uv && (mesh.uv.is_none() || split.stores()));
         let mut track = Track {
             uv,
             level: 0,
@@ -108,10 +125,22 @@ impl Track {
             new_wide: Vec::new(),
             stage: Stage::Done,
             corners: Vec::new(),
+            offsets: Vec::new(),
+            kinds: Vec::new(),
+            source: Vec::new(),
+            counts: match (&mesh.uv, uv) {
+                (Some(channel), true) => channel.counts,
+                _ => mesh.counts(),
+            },
             before: Counts::default(),
+            corner: Vec::new(),
+            lone: split.lone(&mesh.topology),
         };
         if !idle {
             track.stage = track.first_stage();
+        }
+        if let (Split::Sqrt3 { .. }, false) = (split, uv) {
+            track.corner = plan.kept(mesh);
         }
         track
     }
@@ -135,9 +164,11 @@ impl Track {
             let tags = if self.uv {
                 Tags { boundary: Boundary::EdgeAndCorner, ..plan.tags(&[]) }
             } else {
-                plan.tags(&mesh.sharp)
+                let sharp = if self.corner.is_empty() { &mesh.sharp } else { &self.corner };
+                Tags { lone: &self.lone, ..plan.tags(sharp) }
             };
-            let children = split.children(&level) as usize;
+            let split = split.at(self.level);
+            let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
             match &mut self.stage {
                 Stage::Points(cursor) => {
                     zeroed(&mut self.new_points, children);
@@ -161,13 +192,33 @@ impl Track {
                         self.stage = self.after_values(plan);
                     }
                 }
+                Stage::HalfEdges(_) if split.stores() => {
+                    let Level::Base(t) = level else { unreachable!("stored levels come of stored levels") };
+                    let cut = split.cut(t);
+                    let stored = cut.connect(t, split, children as u32);
+                    self.source = descend(&self.source, cut.source);
+                    self.lone = split.lone(&stored);
+                    self.half_edges = Some(Owned::Stored(stored));
+                    self.advance(split);
+                    self.stage = self.first_stage();
+                    return; // A whole level is enough for one slice.
+                }
                 Stage::HalfEdges(at) => {
                     let next = self.next.get_or_insert_with(|| Owned::below(&level, split));
                     if next.fill(&level, at, quota) {
                         self.half_edges = self.next.take();
-                        self.advance();
+                        self.advance(split);
                         self.stage = self.first_stage();
                     }
+                }
+                Stage::Corners(_) if split.stores() => {
+                    let Level::Base(t) = level else { unreachable!("stored levels come of stored levels") };
+                    let cut = split.cut(t);
+                    self.source = descend(&self.source, cut.source);
+                    (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
+                    self.stage = Stage::Done;
+                    self.advance(split);
+                    self.half_edges = None;
                 }
                 Stage::Corners(at) => {
                     on!(&level, c => {
@@ -177,12 +228,11 @@ impl Track {
                         *quota -= (end - *at) as usize;
                         *at = end;
                         if end == c.faces() {
-                            self.before = c.counts();
                             self.stage = Stage::Done;
                         }
                     });
                     if self.stage == Stage::Done {
-                        self.advance();
+                        self.advance(split);
                         self.half_edges = None;
                     }
                 }
@@ -195,13 +245,23 @@ impl Track {
         if self.level + 1 == plan.level { Stage::Corners(0) } else { Stage::HalfEdges(0) }
     }
 
-    fn advance(&mut self) {
+    fn advance(&mut self, split: Split) {
         self.level += 1;
+        self.before = self.counts;
+        self.counts = split.counts(self.counts).unwrap_or_default();
         if !self.uv {
             self.points = Some(std::mem::take(&mut self.new_points));
         }
         self.wide = std::mem::take(&mut self.new_wide);
     }
+}
+
+/// The mesh's faces behind a level's, from those behind its parent's (empty where they are the same).
+fn descend(parent: &[u32], mut source: Vec<u32>) -> Vec<u32> {
+    if !parent.is_empty() {
+        source.iter_mut().for_each(|f| *f = parent[*f as usize]);
+    }
+    source
 }
 
 /// Makes `buffer` of that length, if it is not yet. Asking for zeroed memory beats writing zeros: fresh pages have them.

@@ -167,9 +167,12 @@ proptest! {
                 prop_assert_eq!(validate(&mesh.topology), Ok(()));
                 mesh.stats();
                 let mesh = std::sync::Arc::new(mesh);
-                for scheme in SCHEMES.iter().filter(|s| s.info.split(mesh.is_triangles()).is_some()) {
+                for scheme in SCHEMES.iter().filter(|s| s.info.split(mesh.is_triangles(), limn_mesh::Boundary::EdgeAndCorner).is_some()) {
                     let plan = limn_mesh::Plan::new(scheme, limn_mesh::Boundary::EdgeAndCorner, 2);
                     let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
+                    if scheme.info.group == "dual" {
+                        continue; // Its vertices are corners.
+                    }
                     let same = |a: usize, b: usize| refined.points[a].map(f32::to_bits) == refined.points[b].map(f32::to_bits);
                     for v in 0..mesh.positions.len() {
                         let first = mesh.vertex_source.iter().position(|&s| s == mesh.vertex_source[v]).unwrap();

@@ -24,6 +24,7 @@ fn check(json: &str) {
     let id = match oracle["scheme"].as_str().unwrap() {
         "catmark" => "catmull-clark",
         "butterfly" => "modified-butterfly",
+        "doosabin" => "doo-sabin",
         other => other,
     };
     // CGAL and OpenMesh round boundary corners as OpenSubdiv's EDGE_ONLY does.
@@ -59,4 +60,5 @@ oracles! {
     osd_icosa_loop osd_tetra_loop osd_gridtri3_loop_edgeonly osd_gridtri3_loop_edgecorner
     cgal_cube_catmark cgal_tetra_catmark cgal_tetra_loop cgal_gridtri3_loop openmesh_icosa_loop
     openmesh_icosa_butterfly openmesh_tetra_butterfly
+    openmesh_icosa_sqrt3 cgal_tetra_sqrt3 cgal_gridtri3_sqrt3 openmesh_gridtri3_sqrt3 cgal_cube_doosabin cgal_tetra_doosabin
 }

@@ -12,20 +12,24 @@
 
 mod butterfly;
 mod catmull_clark;
+mod doo_sabin;
 mod j_spline;
 mod linear;
 #[path = "loop.rs"]
 mod loop_;
 mod modified_butterfly;
 mod params;
+mod sqrt3;
 
 pub use butterfly::Butterfly;
 pub use catmull_clark::CatmullClark;
+pub use doo_sabin::{DooSabin, Midpoint};
 pub use j_spline::JSpline;
 pub use linear::Linear;
 pub use loop_::Loop;
 pub use modified_butterfly::ModifiedButterfly;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
+pub use sqrt3::Sqrt3;
 
 use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{Level, Split};
@@ -35,9 +39,12 @@ use crate::topology::{Connectivity, is_boundary};
 pub static SCHEMES: &[Entry] = &[
     entry::<CatmullClark>(),
     entry::<Loop>(),
+    entry::<Sqrt3>(),
     entry::<JSpline>(),
     entry::<Butterfly>(),
     entry::<ModifiedButterfly>(),
+    entry::<DooSabin>(),
+    entry::<Midpoint>(),
     entry::<Linear>(),
 ];
 
@@ -76,15 +83,21 @@ pub enum Accepts {
     Triangles,
     /// Any polygons; the triangle split where all faces are triangles, else the quad split.
     Both,
+    /// Any polygons; the dual split.
+    DualPolygons,
+    /// Triangles only; the sqrt3 split.
+    Sqrt3Triangles,
 }
 
 impl Info {
     /// The split that this scheme uses on a mesh whose faces are `triangles` (all) or not; none if it cannot take it.
-    pub fn split(&self, triangles: bool) -> Option<Split> {
+    pub fn split(&self, triangles: bool, boundary: Boundary) -> Option<Split> {
         match (self.accepts, triangles) {
+            (Accepts::DualPolygons, _) => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
+            (Accepts::Sqrt3Triangles, true) => Some(Split::Sqrt3 { trisect: false }),
             (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
-            (Accepts::Triangles, false) => None,
+            (Accepts::Triangles | Accepts::Sqrt3Triangles, false) => None,
         }
     }
 }
@@ -106,6 +119,8 @@ pub struct Tags<'a> {
     pub boundary: Boundary,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
+    /// Corners with two images, of the dual split, by their half-edges: children from `half_edges()` on.
+    pub lone: &'a [u32],
     /// The scheme's parameters: [`Params::of`].
     pub params: [f64; MOST_PARAMS],
 }
@@ -113,7 +128,7 @@ pub struct Tags<'a> {
 impl Tags<'_> {
     /// Whether `v`, which starts its turn at `start`, is kept.
     #[inline(always)]
-    fn is_sharp<C: Connectivity>(&self, c: &C, v: u32) -> bool {
+    pub(crate) fn is_sharp<C: Connectivity>(&self, c: &C, v: u32) -> bool {
         if (v as usize) < self.sharp.len() && self.sharp[v as usize] {
             return true;
         }
@@ -159,6 +174,7 @@ const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
         eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
+            (Level::Base(c), Accepts::DualPolygons | Accepts::Sqrt3Triangles) => S::rules(*c, split, tags, sink),
             (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
             (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
             (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),

@@ -19,9 +19,11 @@
 //! Ids of vertices are stable prefixes: vertex 17 of level 0 is vertex 17 of every level. Cost: about 3 ns a half-edge.
 
 mod quad;
+pub(crate) mod stored;
 mod triangle;
 
 pub use quad::QuadLevel;
+pub use stored::FaceKind;
 pub use triangle::TriangleLevel;
 
 use crate::topology::{Connectivity, Counts};
@@ -33,19 +35,41 @@ pub enum Split {
     Quad,
     /// Every triangle becomes four. Takes triangles only.
     Triangle,
+    /// A face for every face, inner edge and vertex; the vertices are corners. Takes any polygons.
+    Dual {
+        /// Whether a boundary vertex of one face has two images.
+        rounded: bool,
+    },
+    /// Three triangles for every triangle, turned by 30 degrees. Takes triangles only.
+    Sqrt3 {
+        /// Whether this step cuts boundary edges in three: every second one.
+        trisect: bool,
+    },
 }
 
 impl Split {
-    /// How many corners every child face has.
-    pub fn degree(self) -> u32 {
+    /// The split of step `step`, counted from 0.
+    pub fn at(self, step: u32) -> Split {
         match self {
-            Split::Quad => 4,
-            Split::Triangle => 3,
+            Split::Sqrt3 { .. } => Split::Sqrt3 { trisect: step % 2 == 1 },
+            other => other,
         }
+    }
+
+    /// Whether levels after this split store their half-edges in full, as level 0 does.
+    pub fn stores(self) -> bool {
+        matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. })
+    }
+
+    /// The corners of `c` that have two images, by their half-edges: children from `half_edges()` on. Cost: linear where
+    /// there can be any.
+    pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
+        if self == (Split::Dual { rounded: true }) { stored::lone_corners(c) } else { Vec::new() }
     }
 
     /// The counts one level further, or none if they do not fit 64 bits.
     pub fn counts(self, c: Counts) -> Option<Counts> {
+        let [one, two, more] = c.rim;
         let new = match self {
             Split::Quad => Counts {
                 vertices: c.vertices.checked_add(c.edges)?.checked_add(c.faces)?,
@@ -53,6 +77,8 @@ impl Split {
                 faces: c.corners,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
+                rim: [one, two.checked_add(c.boundary)?, more],
+                ..c
             },
             Split::Triangle => Counts {
                 vertices: c.vertices.checked_add(c.edges)?,
@@ -60,7 +86,47 @@ impl Split {
                 faces: c.faces.checked_mul(4)?,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
+                rim: [one, two, more.checked_add(c.boundary)?],
+                ..c
             },
+            Split::Dual { rounded } => {
+                let inner = c.edges.checked_sub(c.boundary)?;
+                let extra = if rounded { one } else { 0 };
+                // Vertices without a v-face: on a boundary with one or two faces, inside with two.
+                let bare = one.checked_add(two)?.checked_add(c.digons)?;
+                let boundary = c.boundary.checked_mul(2)?.checked_sub(one)?.checked_add(extra)?;
+                let spared = one.checked_add(two.checked_add(c.digons)?.checked_mul(2)?)?;
+                let corners = c
+                    .corners
+                    .checked_mul(2)?
+                    .checked_add(inner.checked_mul(4)?)?
+                    .checked_add(extra)?
+                    .checked_sub(spared)?;
+                Counts {
+                    vertices: c.corners.checked_add(extra)?,
+                    edges: corners.checked_add(boundary)? / 2,
+                    faces: c.faces.checked_add(inner)?.checked_add(c.vertices)?.checked_sub(bare)?,
+                    corners,
+                    boundary,
+                    rim: [one.checked_add(extra)?, two.checked_mul(2)?, more.checked_mul(2)?],
+                    digons: 0,
+                }
+            }
+            Split::Sqrt3 { trisect } => {
+                let boundary = if trisect { c.boundary.checked_mul(3)? } else { c.boundary };
+                let corners = c.corners.checked_mul(3)?;
+                let new = if trisect { c.boundary } else { 0 };
+                Counts {
+                    vertices: c.vertices.checked_add(c.faces)?.checked_add(new)?,
+                    edges: corners.checked_add(boundary)? / 2,
+                    faces: c.corners,
+                    corners,
+                    boundary,
+                    // Not followed any further: no dual split comes after this one.
+                    rim: [0, 0, boundary],
+                    digons: 0,
+                }
+            }
         };
         Some(new)
     }
@@ -82,21 +148,34 @@ impl Split {
     pub fn first_edge_point(self, c: &impl Connectivity) -> u32 {
         match self {
             Split::Quad => c.vertices() + c.faces(),
-            Split::Triangle => c.vertices(),
+            _ => c.vertices(),
         }
     }
 
-    /// How many child vertices there are.
+    /// How many child vertices there are. Cost: constant, but for the dual split with rounded corners.
     pub fn children(self, c: &impl Connectivity) -> u32 {
-        self.first_edge_point(c) + c.edges()
+        match self {
+            Split::Quad | Split::Triangle => self.first_edge_point(c) + c.edges(),
+            Split::Dual { .. } => c.half_edges() + self.lone(c).len() as u32,
+            Split::Sqrt3 { trisect } => c.vertices() + c.faces() + if trisect { c.boundary_half_edges() } else { 0 },
+        }
     }
 
     /// The corners of the child faces, for a level that is only shown. Writes the children of parent faces `from..to`
     /// into `out` (all children's corners, `4 * H` long). Cost: about 2 ns a corner.
-    pub fn corners(self, c: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
+    pub(crate) fn corners(self, c: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
         match self {
             Split::Quad => quad::corners(c, from, to, out),
             Split::Triangle => triangle::corners(c, from, to, out),
+            _ => unreachable!("a stored split cuts a whole level at once"),
+        }
+    }
+
+    /// The faces of the next level, for splits that store it. `c` is a stored level.
+    pub(crate) fn cut(self, c: &crate::Topology) -> stored::Cut {
+        match self {
+            Split::Sqrt3 { trisect } => stored::sqrt3(c, trisect),
+            _ => stored::dual(c, &self.lone(c)),
         }
     }
 }
@@ -145,6 +224,10 @@ impl Connectivity for Level<'_> {
     #[inline(never)]
     fn boundary_half_edges(&self) -> u32 {
         on!(self, c => c.boundary_half_edges())
+    }
+    #[inline(never)]
+    fn boundary_half_edge(&self, rank: u32) -> u32 {
+        on!(self, c => c.boundary_half_edge(rank))
     }
     #[inline(never)]
     fn face_half_edges(&self, f: u32) -> std::ops::Range<u32> {

@@ -128,6 +128,10 @@ impl Connectivity for QuadLevel {
         self.boundary.len() as u32
     }
     #[inline(always)]
+    fn boundary_half_edge(&self, rank: u32) -> u32 {
+        self.boundary[rank as usize]
+    }
+    #[inline(always)]
     fn face_half_edges(&self, f: u32) -> Range<u32> {
         4 * f..4 * f + 4
     }

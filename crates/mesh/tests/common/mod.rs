@@ -1,6 +1,8 @@
 //! Meshes that the tests share: built-in shapes, odd ones, and random ones for proptest.
 #![allow(dead_code)]
 
+pub mod polygons;
+
 use limn_mesh::{Mesh, SHAPES, Soup, Weld};
 use proptest::prelude::*;
 use std::sync::Arc;

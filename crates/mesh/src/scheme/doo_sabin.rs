@@ -1,0 +1,111 @@
+//! Doo-Sabin (D. Doo, M. Sabin, "Behaviour of recursive division surfaces near extraordinary points", 1978), and Doo's
+//! midpoint variant (D. Doo, "A subdivision algorithm for smoothing down irregularly shaped polyhedrons", 1978).
+//!
+//! Every corner of a face of k corners has an image: with the corner itself counted 0 and the others 1 .. k - 1 round the
+//! face, the weights are
+//!
+//! ```text
+//!   .-----------.      Doo-Sabin   w0 = 1/4 + 5/(4k)      wj = (3 + 2 cos(2 pi j / k)) / (4k)
+//!   | x       x |      midpoint    (corner + its two edges' midpoints + centroid) / 4
+//!   |   face    |
+//!   | x       x |      both give 9, 3, 3, 1 sixteenths on quads: the biquadratic B-spline
+//!   '-----------'
+//! ```
+//!
+//! On a boundary the images nearest to it are those of Chaikin's curve, 3/4 of the vertex and 1/4 of the next one along it;
+//! a vertex of one face stays, or is cut off as the rest of the curve ([`super::Boundary`]). New faces are quads but for
+//! those in the place of other faces and vertices, which stay as they are: C1. Cost: about 40 ns an output face.
+
+use super::{Accepts, Boundary, Info, Scheme, Tags};
+use crate::sink::{Row, Sink};
+use crate::split::Split;
+use crate::topology::{Connectivity, is_boundary};
+
+/// See the module.
+#[derive(Debug)]
+pub struct DooSabin;
+
+impl Scheme for DooSabin {
+    const INFO: Info = Info {
+        id: "doo-sabin",
+        name: "Doo–Sabin",
+        group: "dual",
+        summary: "Cuts the corners of any polygons: a face for every face, edge and vertex.",
+        source: "Doo & Sabin 1978",
+        accepts: Accepts::DualPolygons,
+        interpolating: false,
+        params: &[],
+    };
+
+    #[inline(always)]
+    fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
+        images(c, tags, sink, |row, h| {
+            let k = c.face_half_edges(c.face(h)).len() as f64;
+            row.vertex(c.origin(h), 0.25 + 1.25 / k);
+            let (mut j, mut x) = (1.0, c.next(h));
+            while x != h {
+                let cos = if k == 4.0 { if j == 2.0 { -1.0 } else { 0.0 } } else { libm::cos(2.0 * PI * j / k) };
+                row.vertex(c.origin(x), (3.0 + 2.0 * cos) / (4.0 * k));
+                (j, x) = (j + 1.0, c.next(x));
+            }
+        });
+    }
+}
+
+use std::f64::consts::PI;
+
+/// See the module.
+#[derive(Debug)]
+pub struct Midpoint;
+
+impl Scheme for Midpoint {
+    const INFO: Info = Info {
+        id: "doo-sabin-midpoint",
+        name: "Doo–Sabin, midpoint",
+        group: "dual",
+        summary: "Doo–Sabin with the simplest weights: the mean of corner, edge midpoints and centroid.",
+        source: "Doo 1978",
+        accepts: Accepts::DualPolygons,
+        interpolating: false,
+        params: &[],
+    };
+
+    #[inline(always)]
+    fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
+        images(c, tags, sink, |row, h| {
+            let corners = c.face_half_edges(c.face(h));
+            let k = corners.len() as f64;
+            for x in corners {
+                row.vertex(c.origin(x), 0.25 / k);
+            }
+            row.vertex(c.origin(h), 0.5);
+            row.pair(c.origin(c.next(h)), c.origin(c.prev(h)), 0.125);
+        });
+    }
+}
+
+/// The image of every corner: by `inner`, or along the boundary.
+#[inline(always)]
+fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, inner: impl for<'r> Fn(&mut K::Row<'r>, u32)) {
+    sink.pass(0, c.half_edges(), |h, row| {
+        let (after, before) = (is_boundary(c.twin(h)), is_boundary(c.twin(c.prev(h))));
+        match (after, before) {
+            (false, false) => inner(row, h),
+            (true, false) => on_curve(row, c.origin(h), c.origin(c.next(h))),
+            // Rounded, this is the image before the corner.
+            (true, true) if tags.boundary == Boundary::EdgeAndCorner => row.vertex(c.origin(h), 1.0),
+            (_, true) => on_curve(row, c.origin(h), c.origin(c.prev(h))),
+        }
+    });
+    sink.pass(c.half_edges(), tags.lone.len() as u32, |i, row| {
+        let h = tags.lone[i as usize];
+        on_curve(row, c.origin(h), c.origin(c.next(h)));
+    });
+}
+
+/// Chaikin's corner cutting.
+#[inline(always)]
+fn on_curve(row: &mut impl Row, v: u32, next: u32) {
+    row.vertex(v, 0.75);
+    row.vertex(next, 0.25);
+}

@@ -1,0 +1,87 @@
+//! Sqrt3 (L. Kobbelt, "sqrt(3)-subdivision", 2000): the slowest growth there is, three triangles for one, all edges turned.
+//!
+//! ```text
+//!   face point    centroid                               a triangle's sides shrink by sqrt(3) a step, and two steps
+//!   vertex        (1 - a) v + a mean of neighbours       trisect every edge
+//!                 a = (4 - 2 cos(2 pi / n)) / 9
+//! ```
+//!
+//! Boundaries change in every second step only, when each edge is cut in three by the cubic B-spline's ternary rule:
+//! (4, 19, 4) / 27 for old vertices, (1, 16, 10) / 27 and its mirror image for new ones. Corners end the curve.
+//! C2 but at extraordinary vertices, C1 there. Cost: about 25 ns an output face.
+
+use super::{Accepts, Info, Scheme, Tags};
+use crate::sink::{Row, Sink};
+use crate::split::Split;
+use crate::topology::{Connectivity, is_boundary};
+
+/// See the module.
+#[derive(Debug)]
+pub struct Sqrt3;
+
+impl Scheme for Sqrt3 {
+    const INFO: Info = Info {
+        id: "sqrt3",
+        name: "√3",
+        group: "approximating",
+        summary: "Smooths triangles with the fewest new ones a step: three for one.",
+        source: "Kobbelt 2000",
+        accepts: Accepts::Sqrt3Triangles,
+        interpolating: false,
+        params: &[],
+    };
+
+    #[inline(always)]
+    fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
+        let trisect = split == (Split::Sqrt3 { trisect: true });
+        let (old, faces) = (c.vertices(), c.faces());
+        sink.pass(old, faces, |f, row| {
+            let corners = c.face_half_edges(f);
+            if let Some(h) = corners.clone().find(|&h| trisect && is_boundary(c.twin(h))) {
+                return third(c, h, false, tags, row);
+            }
+            corners.for_each(|h| row.vertex(c.origin(h), 1.0 / 3.0));
+        });
+        sink.pass(old + faces, if trisect { c.boundary_half_edges() } else { 0 }, |r, row| {
+            third(c, c.boundary_half_edge(r), true, tags, row);
+        });
+        sink.pass(0, old, |v, row| {
+            let mut n = 0u32;
+            let arriving = c.turn(v, |_| n += 1);
+            match arriving {
+                Some(arriving) if trisect && !tags.is_sharp(c, v) => {
+                    let next = c.origin(c.next(c.vertex_half_edge(v)));
+                    row.pair(next, c.origin(arriving), 4.0 / 27.0);
+                    row.vertex(v, 19.0 / 27.0);
+                }
+                None if !tags.is_sharp(c, v) => {
+                    let n = f64::from(n);
+                    let a = (4.0 - 2.0 * libm::cos(2.0 * std::f64::consts::PI / n)) / 9.0;
+                    c.turn(v, |h| row.vertex(c.origin(c.next(h)), a / n));
+                    row.vertex(v, 1.0 - a);
+                }
+                _ => row.vertex(v, 1.0),
+            }
+        });
+    }
+}
+
+/// The first or the second point that cuts boundary half-edge `h` in three. A corner's curve goes straight on behind it.
+#[inline(always)]
+fn third<C: Connectivity>(c: &C, h: u32, second: bool, tags: Tags<'_>, row: &mut impl Row) {
+    let (a, b) = (c.origin(h), c.origin(c.next(h)));
+    let (near, far) = if second { (b, a) } else { (a, b) };
+    let beyond = if second {
+        c.origin(c.next(c.vertex_half_edge(b)))
+    } else {
+        c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving))
+    };
+    if tags.is_sharp(c, near) {
+        row.vertex(near, 18.0 / 27.0);
+        row.vertex(far, 9.0 / 27.0);
+    } else {
+        row.vertex(near, 16.0 / 27.0);
+        row.vertex(far, 10.0 / 27.0);
+        row.vertex(beyond, 1.0 / 27.0);
+    }
+}
