@@ -46,7 +46,7 @@ pub use mesh::{Mesh, Stats, TopologyError};
 pub use refine::{Job, Plan, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
-pub use scheme::{Accepts, Boundary, Domain, Entry, Info, Param, Params, SCHEMES, scheme};
+pub use scheme::{Accepts, Boundary, Domain, Entry, Family, Info, Param, Params, SCHEMES, scheme};
 pub use shapes::{SHAPES, Shape, shape};
 pub use soup::{NONE, Soup};
 pub use split::{FaceKind, Split};

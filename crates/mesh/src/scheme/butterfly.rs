@@ -16,7 +16,7 @@
 //!
 //! Cost: about 20 ns an output face.
 
-use super::{Accepts, Domain, Info, Param, Scheme, Tags};
+use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -33,6 +33,7 @@ impl Scheme for Butterfly {
         summary: "Smooths triangles through their own vertices, with a tension to choose.",
         source: "Dyn, Levin & Gregory 1990",
         accepts: Accepts::Triangles,
+        family: Family::Primal,
         interpolating: true,
         params: &[Param {
             key: "w",

@@ -11,7 +11,7 @@
 //!
 //! Cost: about 20 ns an output face. Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Info, Scheme, Tags, face_centroids, kept_or_curve};
+use super::{Accepts, Family, Info, Scheme, Tags, face_centroids, kept_or_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -28,6 +28,7 @@ impl Scheme for CatmullClark {
         summary: "Smooths any polygons into quads; the standard of film and modelling.",
         source: "Catmull & Clark 1978",
         accepts: Accepts::Polygons,
+        family: Family::Primal,
         interpolating: false,
         params: &[],
     };

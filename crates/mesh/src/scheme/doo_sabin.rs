@@ -16,10 +16,11 @@
 //! a vertex of one face stays, or is cut off as the rest of the curve ([`super::Boundary`]). New faces are quads but for
 //! those in the place of other faces and vertices, which stay as they are: C1. Cost: about 40 ns an output face.
 
-use super::{Accepts, Boundary, Info, Scheme, Tags};
+use super::{Accepts, Boundary, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
+use std::f64::consts::PI;
 
 /// See the module.
 #[derive(Debug)]
@@ -32,27 +33,21 @@ impl Scheme for DooSabin {
         group: "dual",
         summary: "Cuts the corners of any polygons: a face for every face, edge and vertex.",
         source: "Doo & Sabin 1978",
-        accepts: Accepts::DualPolygons,
+        accepts: Accepts::Polygons,
+        family: Family::Dual,
         interpolating: false,
         params: &[],
     };
 
-    #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
-        images(c, tags, sink, |row, h| {
-            let k = c.face_half_edges(c.face(h)).len() as f64;
-            row.vertex(c.origin(h), 0.25 + 1.25 / k);
-            let (mut j, mut x) = (1.0, c.next(h));
-            while x != h {
-                let cos = if k == 4.0 { if j == 2.0 { -1.0 } else { 0.0 } } else { libm::cos(2.0 * PI * j / k) };
-                row.vertex(c.origin(x), (3.0 + 2.0 * cos) / (4.0 * k));
-                (j, x) = (j + 1.0, c.next(x));
-            }
+        images(c, tags, sink, |k, j| match (k, j) {
+            (k, 0) => 0.25 + 1.25 / k as f64,
+            (4, 2) => 0.0625,
+            (4, _) => 0.1875,
+            _ => (3.0 + 2.0 * libm::cos(2.0 * PI * j as f64 / k as f64)) / (4.0 * k as f64),
         });
     }
 }
-
-use std::f64::consts::PI;
 
 /// See the module.
 #[derive(Debug)]
@@ -65,36 +60,46 @@ impl Scheme for Midpoint {
         group: "dual",
         summary: "Doo–Sabin with the simplest weights: the mean of corner, edge midpoints and centroid.",
         source: "Doo 1978",
-        accepts: Accepts::DualPolygons,
+        accepts: Accepts::Polygons,
+        family: Family::Dual,
         interpolating: false,
         params: &[],
     };
 
-    #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
-        images(c, tags, sink, |row, h| {
-            let corners = c.face_half_edges(c.face(h));
-            let k = corners.len() as f64;
-            for x in corners {
-                row.vertex(c.origin(x), 0.25 / k);
-            }
-            row.vertex(c.origin(h), 0.5);
-            row.pair(c.origin(c.next(h)), c.origin(c.prev(h)), 0.125);
+        images(c, tags, sink, |k, j| {
+            let centroid = 0.25 / k as f64;
+            // The corner counts once, and half in each midpoint.
+            centroid
+                + if j == 0 {
+                    0.5
+                } else if j == 1 || j + 1 == k {
+                    0.125
+                } else {
+                    0.0
+                }
         });
     }
 }
 
-/// The image of every corner: by `inner`, or along the boundary.
-#[inline(always)]
-fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, inner: impl for<'r> Fn(&mut K::Row<'r>, u32)) {
+/// The image of every corner: along the boundary, or by `weight(k, j)` of the corner `j` places on in a face of `k`.
+#[inline(never)]
+fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, weight: fn(usize, usize) -> f64) {
+    let quad = [weight(4, 0), weight(4, 1), weight(4, 2), weight(4, 3)];
     sink.pass(0, c.half_edges(), |h, row| {
         let (after, before) = (is_boundary(c.twin(h)), is_boundary(c.twin(c.prev(h))));
         match (after, before) {
-            (false, false) => inner(row, h),
-            (true, false) => on_curve(row, c.origin(h), c.origin(c.next(h))),
+            (false, false) => {
+                let k = c.face_half_edges(c.face(h)).len();
+                let mut x = h;
+                for j in 0..k {
+                    row.vertex(c.origin(x), if k == 4 { quad[j & 3] } else { weight(k, j) });
+                    x = c.next(x);
+                }
+            }
             // Rounded, this is the image before the corner.
             (true, true) if tags.boundary == Boundary::EdgeAndCorner => row.vertex(c.origin(h), 1.0),
-            (_, true) => on_curve(row, c.origin(h), c.origin(c.prev(h))),
+            (after, _) => on_curve(row, c.origin(h), c.origin(if after && !before { c.next(h) } else { c.prev(h) })),
         }
     });
     sink.pass(c.half_edges(), tags.lone.len() as u32, |i, row| {

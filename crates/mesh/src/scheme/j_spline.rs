@@ -14,7 +14,7 @@
 //! 1 the cubic B-spline). With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
 //! never stored the moved vertices, oscillation and all. Cost: about 40 ns an output face (two rings an edge).
 
-use super::{Accepts, Domain, Info, Param, Scheme, Tags};
+use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -31,6 +31,7 @@ impl Scheme for JSpline {
         summary: "A dial between going through the vertices and smoothing them.",
         source: "Rossignac & Schaefer 2008",
         accepts: Accepts::Triangles,
+        family: Family::Primal,
         interpolating: false,
         params: &[
             Param {

@@ -13,7 +13,7 @@
 //!
 //! Cost: about 8 ns an output face. Limit: it never smooths.
 
-use super::{Accepts, Info, Scheme, Tags, face_centroids};
+use super::{Accepts, Family, Info, Scheme, Tags, face_centroids};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -30,6 +30,7 @@ impl Scheme for Linear {
         summary: "Splits every face and keeps the shape.",
         source: "folklore",
         accepts: Accepts::Both,
+        family: Family::Primal,
         interpolating: true,
         params: &[],
     };

@@ -17,7 +17,7 @@
 //!
 //! Cost: about 12 ns an output face (half a vertex each). Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Domain, Info, Param, Scheme, Tags, kept_or_curve};
+use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, kept_or_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -47,6 +47,7 @@ impl Scheme for Loop {
         summary: "Smooths triangle meshes; the standard for scans and games.",
         source: "Loop 1987",
         accepts: Accepts::Triangles,
+        family: Family::Primal,
         interpolating: false,
         params: &[Param {
             key: "weights",

@@ -68,6 +68,8 @@ pub struct Info {
     pub source: &'static str,
     /// The faces it takes.
     pub accepts: Accepts,
+    /// What it does to the connectivity.
+    pub family: Family,
     /// Whether the vertices of a level keep their positions in the next.
     pub interpolating: bool,
     /// What can be set, in the order of [`Params`].
@@ -83,21 +85,28 @@ pub enum Accepts {
     Triangles,
     /// Any polygons; the triangle split where all faces are triangles, else the quad split.
     Both,
-    /// Any polygons; the dual split.
-    DualPolygons,
-    /// Triangles only; the sqrt3 split.
-    Sqrt3Triangles,
+}
+
+/// What a scheme does to the connectivity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// Splits faces: the quad split, or the triangle split.
+    Primal,
+    /// Splits vertices: a face for every face, edge and vertex.
+    Dual,
+    /// Splits triangles in three and turns their edges.
+    Sqrt3,
 }
 
 impl Info {
     /// The split that this scheme uses on a mesh whose faces are `triangles` (all) or not; none if it cannot take it.
     pub fn split(&self, triangles: bool, boundary: Boundary) -> Option<Split> {
         match (self.accepts, triangles) {
-            (Accepts::DualPolygons, _) => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
-            (Accepts::Sqrt3Triangles, true) => Some(Split::Sqrt3 { trisect: false }),
+            (Accepts::Triangles, false) => None,
+            _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
+            _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
             (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
-            (Accepts::Triangles | Accepts::Sqrt3Triangles, false) => None,
         }
     }
 }
@@ -174,8 +183,9 @@ const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
         eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
-            (Level::Base(c), Accepts::DualPolygons | Accepts::Sqrt3Triangles) => S::rules(*c, split, tags, sink),
-            (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
+            (Level::Base(c), _) if S::COMMON || S::INFO.family as u8 != Family::Primal as u8 => {
+                S::rules(*c, split, tags, sink)
+            }
             (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
             (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
             _ if S::COMMON => unreachable!("a scheme's own split made the level"),

@@ -17,7 +17,7 @@
 //! extraordinary vertices.
 
 use super::butterfly::{eight_points, four_points};
-use super::{Accepts, Info, Scheme, Tags};
+use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -38,6 +38,7 @@ impl Scheme for ModifiedButterfly {
         summary: "Smooths triangles through their own vertices, evenly at every valence.",
         source: "Zorin, Schröder & Sweldens 1996",
         accepts: Accepts::Triangles,
+        family: Family::Primal,
         interpolating: true,
         params: &[],
     };

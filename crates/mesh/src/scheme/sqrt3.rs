@@ -10,7 +10,7 @@
 //! (4, 19, 4) / 27 for old vertices, (1, 16, 10) / 27 and its mirror image for new ones. Corners end the curve.
 //! C2 but at extraordinary vertices, C1 there. Cost: about 25 ns an output face.
 
-use super::{Accepts, Info, Scheme, Tags};
+use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -26,7 +26,8 @@ impl Scheme for Sqrt3 {
         group: "approximating",
         summary: "Smooths triangles with the fewest new ones a step: three for one.",
         source: "Kobbelt 2000",
-        accepts: Accepts::Sqrt3Triangles,
+        accepts: Accepts::Triangles,
+        family: Family::Sqrt3,
         interpolating: false,
         params: &[],
     };
@@ -67,7 +68,7 @@ impl Scheme for Sqrt3 {
 }
 
 /// The first or the second point that cuts boundary half-edge `h` in three. A corner's curve goes straight on behind it.
-#[inline(always)]
+#[inline(never)]
 fn third<C: Connectivity>(c: &C, h: u32, second: bool, tags: Tags<'_>, row: &mut impl Row) {
     let (a, b) = (c.origin(h), c.origin(c.next(h)));
     let (near, far) = if second { (b, a) } else { (a, b) };
