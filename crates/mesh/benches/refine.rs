@@ -102,9 +102,10 @@ fn main() {
     for level in 1..=5 {
         table.row("creature", "linear", &quads, level);
     }
-    for id in ["j-spline", "butterfly", "modified-butterfly"] {
+    for id in ["sqrt3", "j-spline", "butterfly", "modified-butterfly"] {
         table.row("creature, triangles", id, &triangles, 4);
     }
+    table.row("creature", "doo-sabin", &quads, 4);
     table.row("pawn", "loop", &built("pawn"), 6);
     table.row("torus", "catmull-clark", &built("torus"), 5);
     table.row("icosahedron", "catmull-clark", &built("icosahedron"), 8);

@@ -56,9 +56,12 @@ impl Scheme for Sqrt3 {
                     row.vertex(v, 19.0 / 27.0);
                 }
                 None if !tags.is_sharp(c, v) => {
-                    let n = f64::from(n);
-                    let a = (4.0 - 2.0 * libm::cos(2.0 * std::f64::consts::PI / n)) / 9.0;
-                    c.turn(v, |h| row.vertex(c.origin(c.next(h)), a / n));
+                    let k = f64::from(n);
+                    // Most vertices have six neighbours.
+                    let cos = if n == 6 { 0.5 } else { libm::cos(2.0 * std::f64::consts::PI / k) };
+                    let a = (4.0 - 2.0 * cos) / 9.0;
+                    c.turn(v, |h| row.vertex(c.origin(c.next(h)), 1.0));
+                    row.scale(a / k);
                     row.vertex(v, 1.0 - a);
                 }
                 _ => row.vertex(v, 1.0),
