@@ -20,7 +20,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::process::ExitCode;
 
 use limn_document::command::{self, Command, parse_all, parse_script};
-use limn_document::{Class, Source};
+use limn_document::{Class, Source, parameters};
 use limn_mesh::SCHEMES;
 
 use crate::arguments::{Arguments, arguments};
@@ -100,9 +100,15 @@ fn help(words: &[String]) -> Result<(), Failure> {
 
 fn schemes() -> Result<(), Failure> {
     let mut text = String::new();
+    let width = SCHEMES.iter().map(|s| s.info.id.len()).max().unwrap_or(0);
     for entry in SCHEMES {
         let info = &entry.info;
-        text.push_str(&format!("{:14} {} ({}). {}\n", info.id, info.name, info.group, info.summary));
+        text.push_str(&format!("{:width$}  {} ({}). {}\n", info.id, info.name, info.group, info.summary));
+        for param in info.params {
+            let (key, expected) = (param.key, parameters::expected(param));
+            let usual = parameters::text(param, param.domain.default());
+            text.push_str(&format!("{:width$}    {key}= {expected}; {usual} unless set. {}\n", "", param.summary));
+        }
     }
     print(&text)
 }

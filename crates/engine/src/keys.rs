@@ -10,7 +10,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Key {
     /// Which.
-    pub key: String,
+    pub key: &'static str,
     /// With Shift. Ignored for signs, whose Shift depends on the keyboard.
     pub shift: bool,
     /// With Ctrl, or Command on a Mac.
@@ -26,63 +26,66 @@ pub struct Key {
     pub page: &'static str,
 }
 
-const fn key(group: &'static str, label: &'static str, command: &'static str) -> Key {
-    Key { key: String::new(), shift: false, modifier: false, group, label, command, page: "" }
+/// A key that sends a command.
+const fn sends(key: &'static str, group: &'static str, label: &'static str, command: &'static str) -> Key {
+    Key { key, shift: false, modifier: false, group, label, command, page: "" }
 }
 
-/// Levels 0 to 9.
-const LEVELS: [&str; 10] =
-    ["level 0", "level 1", "level 2", "level 3", "level 4", "level 5", "level 6", "level 7", "level 8", "level 9"];
+/// A key that asks the page.
+const fn asks(key: &'static str, label: &'static str, page: &'static str) -> Key {
+    Key { page, ..sends(key, "Page", label, "") }
+}
+
+const fn shift(key: Key) -> Key {
+    Key { shift: true, ..key }
+}
+
+const fn ctrl(key: Key) -> Key {
+    Key { modifier: true, ..key }
+}
 
 /// Every key, in the order of the help.
-pub fn keys() -> Vec<Key> {
-    let mut all = Vec::new();
-    let mut add = |text: &str, key: Key| all.push(Key { key: text.to_owned(), ..key });
-    for (i, command) in LEVELS.into_iter().enumerate() {
-        add(
-            &i.to_string(),
-            key("Levels", if i == 0 { "Level 0, the model itself; 1 to 9 likewise" } else { "" }, command),
-        );
-    }
-    add("arrowright", key("Levels", "Next level", "step 1"));
-    add("arrowleft", key("Levels", "Level before", "step -1"));
-    add("w", key("View", "Edges", "toggle edges"));
-    add("c", key("View", "Cage: the model itself, over its surface", "toggle cage"));
-    add("v", key("View", "Points", "toggle points"));
-    add("s", key("View", "Smooth or flat", "toggle shading"));
-    add("p", key("View", "Perspective or orthographic", "toggle projection"));
-    add("f", key("View", "Frame the model", "view camera=fit"));
-    add("h", key("View", "Home: the first view", "view camera=home"));
-    add("x", key("View", "From the right", "view camera=right"));
-    add("y", key("View", "From the front", "view camera=front"));
-    add("z", key("View", "From the top", "view camera=top"));
-    for (text, label, command) in [
-        ("arrowleft", "Turn the model; likewise the other arrows", "turn -15 0"),
-        ("arrowright", "", "turn 15 0"),
-        ("arrowup", "", "turn 0 15"),
-        ("arrowdown", "", "turn 0 -15"),
-    ] {
-        add(text, Key { shift: true, ..key("View", label, command) });
-    }
-    add("+", key("View", "Closer", "zoom 0.8"));
-    add("=", key("View", "", "zoom 0.8"));
-    add("-", key("View", "Farther", "zoom 1.25"));
-    add("z", Key { modifier: true, ..key("Document", "Undo", "undo") });
-    add("z", Key { modifier: true, shift: true, ..key("Document", "Redo", "redo") });
-    add("y", Key { modifier: true, ..key("Document", "", "redo") });
-    for (text, label, page) in [
-        ("o", "Open files", "open"),
-        ("l", "Copy link", "copy"),
-        ("t", "Dark or light theme", "theme"),
-        ("b", "Panel", "panel"),
-        ("/", "Console", "console"),
-        ("?", "This help", "help"),
-        ("escape", "Dismiss a message, close the panel", "escape"),
-    ] {
-        add(text, Key { page, ..key("Page", label, "") });
-    }
-    all
-}
+pub static KEYS: &[Key] = &[
+    sends("0", "Levels", "Level 0, the model itself; 1 to 9 likewise", "level 0"),
+    sends("1", "Levels", "", "level 1"),
+    sends("2", "Levels", "", "level 2"),
+    sends("3", "Levels", "", "level 3"),
+    sends("4", "Levels", "", "level 4"),
+    sends("5", "Levels", "", "level 5"),
+    sends("6", "Levels", "", "level 6"),
+    sends("7", "Levels", "", "level 7"),
+    sends("8", "Levels", "", "level 8"),
+    sends("9", "Levels", "", "level 9"),
+    sends("arrowright", "Levels", "Next level", "step 1"),
+    sends("arrowleft", "Levels", "Level before", "step -1"),
+    sends("w", "View", "Edges", "toggle edges"),
+    sends("c", "View", "Cage: the model itself, over its surface", "toggle cage"),
+    sends("v", "View", "Points", "toggle points"),
+    sends("s", "View", "Smooth or flat", "toggle shading"),
+    sends("p", "View", "Perspective or orthographic", "toggle projection"),
+    sends("f", "View", "Frame the model", "view camera=fit"),
+    sends("h", "View", "Home: the first view", "view camera=home"),
+    sends("x", "View", "From the right", "view camera=right"),
+    sends("y", "View", "From the front", "view camera=front"),
+    sends("z", "View", "From the top", "view camera=top"),
+    shift(sends("arrowleft", "View", "Turn the model; likewise the other arrows", "turn -15 0")),
+    shift(sends("arrowright", "View", "", "turn 15 0")),
+    shift(sends("arrowup", "View", "", "turn 0 15")),
+    shift(sends("arrowdown", "View", "", "turn 0 -15")),
+    sends("+", "View", "Closer", "zoom 0.8"),
+    sends("=", "View", "", "zoom 0.8"),
+    sends("-", "View", "Farther", "zoom 1.25"),
+    ctrl(sends("z", "Document", "Undo", "undo")),
+    ctrl(shift(sends("z", "Document", "Redo", "redo"))),
+    ctrl(sends("y", "Document", "", "redo")),
+    asks("o", "Open files", "open"),
+    asks("l", "Copy link", "copy"),
+    asks("t", "Dark or light theme", "theme"),
+    asks("b", "Panel", "panel"),
+    asks("/", "Console", "console"),
+    asks("?", "This help", "help"),
+    asks("escape", "Dismiss a message, close the panel", "escape"),
+];
 
 #[cfg(test)]
 mod tests {
@@ -90,22 +93,21 @@ mod tests {
 
     #[test]
     fn no_key_means_two_things_and_each_does_one() {
-        let all = keys();
-        for (i, a) in all.iter().enumerate() {
+        for (i, a) in KEYS.iter().enumerate() {
             assert!(a.command.is_empty() != a.page.is_empty(), "{a:?}");
-            assert!(!all[..i].iter().any(|b| (&a.key, a.shift, a.modifier) == (&b.key, b.shift, b.modifier)), "{a:?}");
+            assert!(!KEYS[..i].iter().any(|b| (a.key, a.shift, a.modifier) == (b.key, b.shift, b.modifier)), "{a:?}");
         }
     }
 
     #[test]
     fn the_browser_keeps_its_shortcuts() {
-        let taken: Vec<_> = keys().into_iter().filter(|k| k.modifier).map(|k| k.key).collect();
+        let taken: Vec<_> = KEYS.iter().filter(|k| k.modifier).map(|k| k.key).collect();
         assert_eq!(taken, ["z", "z", "y"]);
     }
 
     #[test]
     fn every_command_is_shorthand_or_grammar() {
-        for key in keys().iter().filter(|k| !k.command.is_empty()) {
+        for key in KEYS.iter().filter(|k| !k.command.is_empty()) {
             let first = key.command.split(' ').next().unwrap();
             let known = crate::shorthand::WORDS.contains(&first) || limn_document::command::spec(first).is_some();
             assert!(known, "{key:?}");

@@ -43,7 +43,7 @@ pub struct Hello {
     /// Rows of the panel.
     pub controls: &'static [crate::controls::Control],
     /// The keyboard.
-    pub keys: Vec<crate::keys::Key>,
+    pub keys: &'static [crate::keys::Key],
     /// The console's commands.
     pub commands: Vec<CommandInfo>,
 }

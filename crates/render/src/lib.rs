@@ -36,6 +36,7 @@ pub mod surface;
 mod target;
 mod uniform;
 mod upload;
+mod wgsl;
 
 pub use wgpu;
 

@@ -4,6 +4,7 @@
 //! All draw with premultiplied alpha; what differs is vertex layout, entry points and depth.
 
 use crate::Gpu;
+use crate::wgsl::wgsl;
 
 /// A WGSL module: its own file with the shared ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,14 +33,14 @@ impl Module {
     }
 
     pub fn source(self) -> String {
-        let common = include_str!("shaders/common.wgsl");
+        let common = wgsl!("shaders/common.wgsl");
         let (common, own) = match self {
-            Module::Surface => (common, include_str!("shaders/surface.wgsl")),
-            Module::Overlay => (common, include_str!("shaders/overlay.wgsl")),
-            Module::Ground => (common, include_str!("shaders/ground.wgsl")),
-            Module::Final => (common, include_str!("shaders/final.wgsl")),
-            Module::Shadow => ("", include_str!("shaders/shadow.wgsl")),
-            Module::Mip => ("", include_str!("shaders/mip.wgsl")),
+            Module::Surface => (common, wgsl!("shaders/surface.wgsl")),
+            Module::Overlay => (common, wgsl!("shaders/overlay.wgsl")),
+            Module::Ground => (common, wgsl!("shaders/ground.wgsl")),
+            Module::Final => (common, wgsl!("shaders/final.wgsl")),
+            Module::Shadow => ("", wgsl!("shaders/shadow.wgsl")),
+            Module::Mip => ("", wgsl!("shaders/mip.wgsl")),
         };
         format!("{common}{own}")
     }

@@ -179,7 +179,7 @@ impl Engine {
                 .collect(),
             models: SHAPES.iter().map(|s| ModelInfo { name: s.name, summary: s.summary }).collect(),
             controls: controls::CONTROLS,
-            keys: keys::keys(),
+            keys: keys::KEYS,
             commands: COMMANDS
                 .iter()
                 .map(|s| CommandInfo {
