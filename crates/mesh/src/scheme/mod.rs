@@ -31,7 +31,7 @@ pub use modified_butterfly::ModifiedButterfly;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use sqrt3::Sqrt3;
 
-use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
+use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
@@ -153,7 +153,7 @@ impl Tags<'_> {
 pub trait Scheme: 'static {
     /// Its entry in the registry.
     const INFO: Info;
-    /// Whether it is worth a compilation of its own for level 0; others take that one step with a branch an access.
+    /// Whether it is chosen often enough to be compiled for every connectivity and sink: twice the code.
     const COMMON: bool = false;
 
     /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
@@ -183,15 +183,26 @@ const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
         eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
-            (Level::Base(c), _) if S::COMMON || S::INFO.family as u8 != Family::Primal as u8 => {
-                S::rules(*c, split, tags, sink)
-            }
+            (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
             (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
             (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
             _ if S::COMMON => unreachable!("a scheme's own split made the level"),
-            _ => S::rules(level, split, tags, sink),
+            _ => seldom::<S>(level, split, tags, &mut Either::Eval(sink)),
         },
-        record: |level, split, tags, sink| S::rules(level, split, tags, sink),
+        record: |level, split, tags, sink| match S::COMMON {
+            true => S::rules(level, split, tags, sink),
+            false => seldom::<S>(level, split, tags, &mut Either::Record(sink)),
+        },
+    }
+}
+
+/// The rules of schemes that are chosen less often, for all but points of triangle levels: one compilation, for stored levels
+/// where the scheme makes such.
+fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
+    match (level, S::INFO.family) {
+        (Level::Base(c), Family::Dual | Family::Sqrt3) => S::rules(*c, split, tags, sink),
+        (level, Family::Primal) => S::rules(level, split, tags, sink),
+        _ => unreachable!("stored levels come of stored levels"),
     }
 }
 
