@@ -366,5 +366,10 @@ fn help_is_enough() {
     );
     assert_eq!(folder.run("--version").ok(), format!("limn {}\n", env!("CARGO_PKG_VERSION")));
     let schemes = folder.run("schemes").ok();
-    assert!(schemes.lines().any(|l| l.starts_with("loop           Loop (approximating). ")), "{schemes}");
+    let mut lines = schemes.lines().skip_while(|l| !l.starts_with("loop "));
+    assert!(lines.next().is_some_and(|l| l.contains("  Loop (approximating). ")), "{schemes}");
+    assert!(
+        lines.next().is_some_and(|l| l.trim_start().starts_with("weights= loop or warren; loop unless set. ")),
+        "{schemes}"
+    );
 }

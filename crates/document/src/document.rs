@@ -424,6 +424,10 @@ impl Document {
             // Building the triangles meets the same trouble again: only what is new is said.
             remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
         }
+        if state.built.mesh.uv.is_some() && state.plan().split(&state.built.mesh).is_ok_and(|split| split.stores()) {
+            let name = state.settings.scheme.info.name;
+            remarks.push(Remark::new(&format!("texture coordinates are left out: {name} does not carry them"), false));
+        }
         remarks
     }
 
