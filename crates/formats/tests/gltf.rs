@@ -648,7 +648,7 @@ fn errors_name_the_element() {
         ),
         (
             |f| f.views[0]["byteStride"] = 9_000_000_000_000_000_000u64.into(),
-            "accessors[0]: its 4 elements need more than 2^64 bytes, but bufferViews[0] has 48.",
+            "bufferViews[0]: its byteStride is 9000000000000000000, which is more than 32 bits can number.",
         ),
         (|f| f.views[0]["buffer"] = 1.into(), "bufferViews[0]: its buffer is 1, but the file has only 1."),
         (

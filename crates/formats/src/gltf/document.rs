@@ -32,11 +32,11 @@ const NOT_USED: [&str; 10] =
     ["extras", "extensions", "min", "max", "target", "weights", "camera", "sampler", "mimeType", "alphaCutoff"];
 
 /// Properties that refer to an element of another list, or are numbers of the specification.
-const NUMBERS: [&str; 9] =
-    ["buffer", "bufferView", "componentType", "index", "indices", "material", "mesh", "mode", "source"];
+const NUMBERS: [&str; 10] =
+    ["buffer", "bufferView", "byteStride", "componentType", "index", "indices", "material", "mesh", "mode", "source"];
 
 /// Properties that count bytes or elements.
-const SIZES: [&str; 4] = ["byteLength", "byteOffset", "byteStride", "count"];
+const SIZES: [&str; 3] = ["byteLength", "byteOffset", "count"];
 
 const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
