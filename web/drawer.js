@@ -21,7 +21,7 @@ export class Drawer {
   /** @type {State | null} */ #state = null;
   /** @type {Line[]} */ #lines = [];
 
-  /** @param {(command: string, echo?: boolean) => void} send @param {() => void} resized */
+  /** @param {(command: string, echo?: boolean, drag?: boolean) => void} send @param {() => void} resized */
   constructor(send, resized) {
     this.send = send;
     this.resized = resized;

@@ -62,9 +62,9 @@ const size = () => {
 };
 
 const engine = new Supervisor(receive, size, theme);
-const send = (/** @type {string} */ text, /** @type {boolean} */ echo = false) => engine.send({ type: "cmd", text, echo });
+const send = (/** @type {string} */ text, echo = false, drag = false) => engine.send({ type: "cmd", text, echo, drag });
 const sendSize = () => engine.send({ type: "size", size: size() });
-const ruler = new Ruler((text, drag) => engine.send({ type: "cmd", text, drag }));
+const ruler = new Ruler((text, drag) => send(text, false, drag));
 const chrome = new Chrome(send);
 const panel = new Drawer(send, sendSize);
 const link = new Link((text) => engine.send({ type: "replay", text }));

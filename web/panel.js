@@ -5,6 +5,7 @@
 
 import { byId, el, full, setAttr, setText } from "./dom.js";
 import { spell } from "./keys.js";
+import { Parameters } from "./parameters.js";
 
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {import("./protocol.js").Hello} Hello */
@@ -23,11 +24,12 @@ export class Panel {
   /** @type {string[]} */ #typed = [];
   #recalled = 0;
 
-  /** @param {(command: string, echo?: boolean) => void} send @param {() => void} resized @param {number} most lines of the console */
+  /** @param {(command: string, echo?: boolean, drag?: boolean) => void} send @param {() => void} resized @param {number} most lines of the console */
   constructor(send, resized, most) {
     this.send = send;
     this.resized = resized;
     this.most = most;
+    this.parameters = new Parameters((command, drag) => send(command, false, drag));
     const input = el("input", {
       id: "command", name: "command", type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, enterKeyHint: "go",
       placeholder: "scheme loop", onkeydown: (/** @type {KeyboardEvent} */ event) => this.#recall(event, input),
@@ -142,9 +144,10 @@ export class Panel {
         return el("fieldset", { id: `control-${control.id}`, className: control.kind, title: control.help },
           el("legend", {}, control.label), el("div", { className: "segments" }, ...buttons));
       });
-      byId(`pane-${tab}`).replaceChildren(...rows, ...(tab === "view" ? [this.#groups] : []));
+      byId(`pane-${tab}`).replaceChildren(...(tab === "view" ? [...rows, this.#groups] : [this.parameters.root, ...rows]));
     }
     byId("commands").replaceChildren(...hello.commands.map((c) => el("option", { value: c.name, label: `${c.args}  ${c.help}` })));
+    this.parameters.learn(hello);
     this.#help(hello);
   }
 
@@ -159,6 +162,7 @@ export class Panel {
         if (!row.classList.contains("actions")) setAttr(button, "aria-pressed", String(button.dataset["value"] === value));
       }
     }
+    this.parameters.show(state);
     this.#showGroups(state);
     this.#showReport(state);
   }

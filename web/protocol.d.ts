@@ -136,6 +136,25 @@ export interface Group {
   command: string;
 }
 
+/** A parameter of the chosen scheme. */
+export interface Parameter {
+  key: string;
+  name: string;
+  summary: string;
+  kind: "number" | "choice";
+  /** Of numbers. */
+  low: number;
+  high: number;
+  default: number;
+  value: number;
+  /** The value as a word of a command. */
+  text: string;
+  /** Of choices; `text` names the chosen one. */
+  choices: { value: string; label: string; command: string }[];
+  /** Sets a number that is appended; other parameters stay. */
+  command: string;
+}
+
 /** The whole view model, sent at most once a frame. */
 export interface State {
   type: "state";
@@ -148,6 +167,7 @@ export interface State {
     facts: { label: string; value: string }[];
   } | null;
   scheme: string;
+  params: Parameter[];
   level: number;
   levels: Level[];
   /** What is on the screen. */

@@ -322,7 +322,12 @@ impl Document {
             after.rebuild()?;
         }
         after.settle(self.budget)?;
-        self.history.record(before.clone(), &after, command.name(), command.to_string(), drag, State::same);
+        // Dragging one scheme's parameter is not what dragging another's is. Ids are no commands' names.
+        let name = match command {
+            Command::Scheme { .. } => after.settings.scheme.info.id,
+            _ => command.name(),
+        };
+        self.history.record(before.clone(), &after, name, command.to_string(), drag, State::same);
         self.state = Some(after.clone());
         Ok(self.compare(&before, &after))
     }

@@ -221,6 +221,34 @@ fn a_slider_drag_is_one_step() {
 }
 
 #[test]
+fn a_parameter_s_drag_is_one_step_of_its_scheme() {
+    let mut d = document("open builtin:pawn\nscheme butterfly");
+    let scheme =
+        |d: &Document| d.commands().into_iter().map(|c| c.to_string()).find(|c| c.starts_with("scheme")).unwrap();
+    for w in ["0.06", "0.05", "0.01"] {
+        assert_eq!(d.drag(&format!("scheme butterfly w={w}")), Ok(Outcome::Refine));
+    }
+    assert_eq!(d.undo_steps(), (Some("scheme butterfly w=0.01"), None));
+    // Nothing said that the first drag was over.
+    for s in ["0.5", "1", "1.25"] {
+        d.drag(&format!("scheme j-spline s={s}")).unwrap();
+    }
+    assert_eq!(run(&mut d, "scheme j-spline s=1.25"), Outcome::Nothing, "let go");
+    run(&mut d, "scheme j-spline s=1.25 move=off");
+    assert_eq!(d.undo_depth(), (3, 0));
+    for expected in ["scheme j-spline s=1.25", "scheme butterfly w=0.01", "scheme butterfly"] {
+        run(&mut d, "undo");
+        assert_eq!(scheme(&d), expected);
+    }
+    // To and fro is no step, also where the end names the default.
+    for w in ["0.05", "0.07", "0.0625"] {
+        d.drag(&format!("scheme butterfly w={w}")).unwrap();
+    }
+    assert_eq!(run(&mut d, "scheme butterfly w=0.0625"), Outcome::Nothing);
+    assert_eq!((scheme(&d), d.undo_depth()), ("scheme butterfly".to_owned(), (0, 0)));
+}
+
+#[test]
 fn undo_says_what_it_takes_back() {
     let mut d = document("open builtin:cube");
     assert_eq!(d.undo_steps(), (None, None));

@@ -2,9 +2,11 @@
 //!
 //! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
 
-use limn_document::{Document, ViewSet};
-use limn_mesh::{Boundary, Weld};
+use limn_document::{Document, ViewSet, parameters};
+use limn_mesh::{Boundary, Domain, Weld};
 use serde::{Serialize, Serializer};
+
+use crate::protocol::{Parameter, ParameterChoice};
 
 /// A row.
 #[derive(Debug, Serialize)]
@@ -216,6 +218,42 @@ pub fn values(document: &Document) -> Values {
     Values(values)
 }
 
+/// The chosen scheme's parameters, each with the commands that set it.
+pub fn parameters(document: &Document) -> Vec<Parameter> {
+    let Some(plan) = document.plan() else { return Vec::new() };
+    let info = &plan.scheme.info;
+    let values = plan.params.of(info);
+    let row = |(at, param): (usize, &'static limn_mesh::Param)| {
+        let value = values.get(at).copied().unwrap_or_default();
+        let command = parameters::prefix(&plan, at);
+        let (kind, low, high, words) = match &param.domain {
+            Domain::Number { low, high, .. } => ("number", *low, *high, &[][..]),
+            Domain::Choice(words) => ("choice", 0.0, 0.0, *words),
+        };
+        let choice = |word: &&'static str| {
+            let mut label = (*word).to_owned();
+            if let Some(first) = label.get_mut(..1) {
+                first.make_ascii_uppercase();
+            }
+            ParameterChoice { value: word, label, command: format!("{command}{word}") }
+        };
+        Parameter {
+            key: param.key,
+            name: param.name,
+            summary: param.summary,
+            kind,
+            low,
+            high,
+            default: param.domain.default(),
+            value,
+            text: parameters::text(param, value),
+            choices: words.iter().map(choice).collect(),
+            command,
+        }
+    };
+    info.params.iter().enumerate().map(row).collect()
+}
+
 /// The rows that make no difference to this model. `open` says whether it has a rim.
 pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     let mut rows = Vec::new();
@@ -257,6 +295,60 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_scheme_s_parameters_are_set_by_their_own_commands() {
+        for entry in limn_mesh::SCHEMES {
+            let mut document = Document::new(1 << 30);
+            assert_eq!(parameters(&document), []);
+            document.run("open builtin:pawn").unwrap();
+            document.run(&format!("scheme {}", entry.info.id)).unwrap();
+            for at in 0..entry.info.params.len() {
+                let row = parameters(&document).swap_remove(at);
+                let param = &entry.info.params[at];
+                assert_eq!(
+                    (row.key, row.value, row.default),
+                    (param.key, param.domain.default(), param.domain.default())
+                );
+                let lines = match row.kind {
+                    "number" => {
+                        assert!(row.choices.is_empty() && row.low < row.high);
+                        [row.low, row.high].map(|v| (v.to_string(), format!("{}{v}", row.command))).to_vec()
+                    }
+                    _ => row.choices.iter().rev().map(|c| (c.value.to_owned(), c.command.clone())).collect(),
+                };
+                let others = |rows: Vec<Parameter>| {
+                    rows.into_iter().map(|r| r.text).enumerate().filter(|r| r.0 != at).collect::<Vec<_>>()
+                };
+                let before = others(parameters(&document));
+                for (text, line) in lines {
+                    document.run(&line).unwrap_or_else(|e| panic!("{line}: {e}"));
+                    assert_eq!(parameters(&document)[at].text, text, "{line}");
+                    assert_eq!(others(parameters(&document)), before, "{line} keeps the others");
+                }
+                // Set to something at last, so that the next ones have something to keep.
+                let word = row.choices.last().map_or(row.high.to_string(), |c| c.value.to_owned());
+                document.run(&format!("{}{word}", row.command)).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn butterfly_s_tension_and_loop_s_weights() {
+        let mut document = Document::new(1 << 30);
+        document.run("open builtin:pawn").unwrap();
+        document.run("scheme butterfly w=0.05").unwrap();
+        let [tension] = &parameters(&document)[..] else { panic!("one parameter") };
+        assert_eq!((tension.name, tension.kind, &*tension.text), ("Tension", "number", "0.05"));
+        assert_eq!([tension.low, tension.high, tension.default, tension.value], [0.0, 0.125, 0.0625, 0.05]);
+        assert_eq!(tension.command, "scheme butterfly w=");
+        document.run("scheme loop weights=warren").unwrap();
+        let [weights] = &parameters(&document)[..] else { panic!("one parameter") };
+        assert_eq!((&*weights.text, weights.value, weights.choices[1].label.as_str()), ("warren", 1.0, "Warren"));
+        assert_eq!(weights.choices[0].command, "scheme loop weights=loop");
+        document.run("scheme linear").unwrap();
+        assert_eq!(parameters(&document), []);
     }
 
     #[test]

@@ -175,6 +175,11 @@ impl Making {
         Arc::ptr_eq(&self.mesh, mesh) && self.plan == plan && self.corners == corners
     }
 
+    /// Whether this differs from `plan` of `mesh` in the scheme's parameters at most.
+    pub fn is_but_for_params(&self, mesh: &Arc<Mesh>, plan: Plan, corners: bool) -> bool {
+        self.is(mesh, Plan { params: self.plan.params, ..plan }, corners)
+    }
+
     /// The level that is being made.
     pub fn level(&self) -> u32 {
         self.plan.level

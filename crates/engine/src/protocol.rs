@@ -188,6 +188,44 @@ pub struct Remark {
     pub kind: &'static str,
 }
 
+/// A parameter of the chosen scheme.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// As in commands.
+    pub key: &'static str,
+    /// What people read.
+    pub name: &'static str,
+    /// One sentence.
+    pub summary: &'static str,
+    /// `number` or `choice`.
+    pub kind: &'static str,
+    /// The least number.
+    pub low: f64,
+    /// The greatest number.
+    pub high: f64,
+    /// The number unless set.
+    pub default: f64,
+    /// The number that is set, or which choice.
+    pub value: f64,
+    /// The value as a word of a command.
+    pub text: String,
+    /// Buttons, one a choice; none for numbers.
+    pub choices: Vec<ParameterChoice>,
+    /// What sets it once the number or the choice's word is appended. Other parameters stay.
+    pub command: String,
+}
+
+/// A choice of a parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParameterChoice {
+    /// As in [`Parameter::text`].
+    pub value: &'static str,
+    /// On the button.
+    pub label: String,
+    /// What it sends.
+    pub command: String,
+}
+
 /// A way to save.
 #[derive(Serialize)]
 pub struct ExportChoice {
@@ -207,6 +245,8 @@ pub struct State {
     pub model: Option<ModelState>,
     /// The chosen scheme.
     pub scheme: &'static str,
+    /// Its parameters.
+    pub params: Vec<Parameter>,
     /// The chosen level.
     pub level: u32,
     /// The ruler.

@@ -170,6 +170,7 @@ impl Engine {
         State {
             model,
             scheme: plan.map_or("", |p| p.scheme.info.id),
+            params: controls::parameters(document),
             level: plan.map_or(0, |p| p.level),
             levels: report::ruler(document),
             shown,

@@ -37,7 +37,9 @@ impl Engine {
             self.overlays();
             return;
         }
-        if self.making.as_ref().is_some_and(|m| m.is(&mesh, plan, corners)) {
+        // A parameter's slider asks again before it can be answered. What it asked for first is made and shown, then the
+        // last: else nothing would be seen until the hand rests.
+        if self.making.as_ref().is_some_and(|m| m.is_but_for_params(&mesh, plan, corners)) {
             return;
         }
         let making = match &self.shown {
@@ -75,10 +77,13 @@ impl Engine {
                     self.renderer.show(Some(surface));
                     self.shown = Some(made);
                     self.paint();
-                    self.overlays();
-                    self.progress_over();
                     self.dirty.picture = true;
                     self.dirty.state = true;
+                    if self.document.plan() != self.shown.as_ref().map(|m| m.plan) {
+                        return self.sync();
+                    }
+                    self.overlays();
+                    self.progress_over();
                     if let Some(file) = self.export.take() {
                         self.write(&file);
                     }

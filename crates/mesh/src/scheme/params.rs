@@ -64,16 +64,16 @@ impl Domain {
 pub struct Params([Option<f64>; MOST_PARAMS]);
 
 impl Params {
-    /// Sets parameter `at` of a scheme; false if there is none or it cannot be that.
+    /// Sets parameter `at` of a scheme, its default as if nothing was set; false if there is none or it cannot be that.
     pub fn set(&mut self, info: &Info, at: usize, value: f64) -> bool {
-        let good = info.params.get(at).is_some_and(|p| p.domain.holds(value));
-        if let (true, Some(slot)) = (good, self.0.get_mut(at)) {
-            *slot = Some(value);
+        let param = info.params.get(at).filter(|p| p.domain.holds(value));
+        if let (Some(param), Some(slot)) = (param, self.0.get_mut(at)) {
+            *slot = (value != param.domain.default()).then_some(value);
         }
-        good
+        param.is_some()
     }
 
-    /// What parameter `at` was set to, if it was.
+    /// What parameter `at` was set to, if to another value than its default.
     pub fn get(&self, at: usize) -> Option<f64> {
         self.0.get(at).copied().flatten()
     }
