@@ -128,6 +128,8 @@ export class Chrome {
     }
     for (const pill of this.#schemes.querySelectorAll("button")) {
       const chosen = pill.id === `scheme-${state.scheme}`;
+      // On a phone the pills are a strip: what is chosen comes to its middle.
+      if (chosen && pill.ariaChecked !== "true") this.#schemes.scrollLeft = pill.offsetLeft - (this.#schemes.clientWidth - pill.offsetWidth) / 2;
       setAttr(pill, "aria-checked", String(chosen));
       pill.tabIndex = chosen ? 0 : -1;
     }

@@ -65,7 +65,7 @@ export class Parameters {
     let now = param;
     // In somebody's hand, or under a key that is held down: the slider is then ahead of the state.
     let held = false;
-    let key_down = false;
+    let keyed = false;
     const id = `parameter-${key}`;
     const input = el("input", { id, type: "range", "aria-describedby": `about-${key}` });
     // In this order: a value is fitted to the bounds that it meets.
@@ -84,13 +84,13 @@ export class Parameters {
     };
     const fill = () => input.style.setProperty("--share", String((input.valueAsNumber - low) / (high - low)));
     const release = () => {
-      key_down = false;
+      keyed = false;
       if (held) ask(false);
     };
     input.addEventListener("input", () => ask(true));
-    input.addEventListener("change", () => key_down || release());
+    input.addEventListener("change", () => keyed || release());
     // A key that repeats is a drag too.
-    input.addEventListener("keydown", (event) => (key_down = /^(Arrow|Page|Home|End)/.test(event.key)));
+    input.addEventListener("keydown", (event) => (keyed = /^(Arrow|Page|Home|End)/.test(event.key)));
     for (const end of ["keyup", "blur"]) input.addEventListener(end, release);
     input.addEventListener("dblclick", back);
     const row = el("div", { className: "number" }, el("label", { for: id }, param.name), reset, value, input, about(param));
@@ -112,14 +112,14 @@ function about({ key, summary }) {
 }
 
 /**
- * A slider's step: of few digits, a hundredth of the range or a little less, such that the default and the end are places of
- * their own; without such a one, any. @param {number} low @param {number} high @param {number} initial
+ * A slider's step: of few digits, a hundredth of the range or less, such that the default and the end are places of their own;
+ * without such a one, any. @param {number} low @param {number} high @param {number} initial
  */
 function step(low, high, initial) {
   const most = (high - low) / PLACES;
   const ten = 10 ** Math.floor(Math.log10(most));
   const whole = (/** @type {number} */ n) => Math.abs(n - Math.round(n)) < 1e-6;
-  const found = [10, 5, 2.5, 2, 1.25, 1, 0.5, 0.25, 0.2, 0.1]
+  const found = [5, 2, 1, 2.5, 1.25, 0.5, 0.2, 0.1]
     .map((n) => n * ten)
     .find((n) => n < most * 1.000001 && whole((initial - low) / n) && whole((high - low) / n));
   return found === undefined ? "any" : Number(found.toPrecision(3));

@@ -86,6 +86,22 @@ describe("the controls", () => {
     assert.notDeepEqual((await picture(page)).data, before.data);
   });
 
+  test("on a phone the schemes are one line, with the chosen one in the middle of it", async () => {
+    await page.setViewportSize({ width: 390, height: 700 });
+    for (const id of ["modified-butterfly", "catmull-clark", "linear"]) {
+      await cmd(page, `scheme ${id}`);
+      await ready(page, (state, id) => state.shown.scheme === id, id);
+      // The strip glides there.
+      await page.waitForFunction((id) => {
+        const [pill, strip] = [`scheme-${id}`, "schemes"].map((id) => document.getElementById(id)?.getBoundingClientRect());
+        return pill && strip && pill.left >= strip.left + 20 && pill.right <= strip.right - 20;
+      }, id);
+      const rows = await page.$$eval("#schemes button", (pills) => new Set(pills.map((pill) => pill.getBoundingClientRect().top)).size);
+      assert.equal(rows, 1);
+    }
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390, "the page itself does not scroll");
+  });
+
   test("a note that was dismissed is not said again for the same model", async () => {
     const scheme = async (/** @type {RegExp} */ name, /** @type {string} */ id) => {
       await page.getByRole("radio", { name }).click();

@@ -32,13 +32,13 @@ describe("the panel", () => {
     assert.deepEqual(page.errors, []);
     await page.context().close();
   });
-  const fetched = () => site.sent.map(({ path }) => path).filter((path) => path.includes("panel"));
+  const fetched = () => site.sent.map(({ path }) => path).filter((path) => /panel|parameters/.test(path));
 
   test("is not part of a first visit, and comes whole", async () => {
     assert.deepEqual(fetched(), []);
     await page.locator("#panel-toggle").hover();
     await page.waitForFunction(() => document.getElementById("tab-view"));
-    assert.deepEqual(fetched().sort(), ["/web/panel.css", "/web/panel.js"], "a pointer on the button is enough");
+    assert.deepEqual(fetched().sort(), ["/web/panel.css", "/web/panel.js", "/web/parameters.js"], "a pointer on the button is enough");
     assert.ok(await page.locator("#panel").isHidden());
     const before = await picture(page);
     await page.locator("#panel-toggle").click();
@@ -51,7 +51,7 @@ describe("the panel", () => {
     await page.keyboard.press("Escape");
     assert.ok(await page.locator("#panel").isHidden());
     assert.ok(Math.abs(centre(await picture(page)) - centre(before)) < 4, "and back");
-    assert.equal(fetched().length, 2, "fetched once");
+    assert.equal(fetched().length, 3, "fetched once");
   });
 
   test("tells of what went wrong before it came", async () => {
