@@ -101,6 +101,13 @@ export class Chrome {
     this.send(command);
   }
 
+  /** On a phone the pills are a strip: it moves as far as shows a pill and a bit of the next one. @param {HTMLElement} pill */
+  #uncover(pill) {
+    const strip = this.#schemes;
+    const left = pill.offsetLeft - 64;
+    strip.scrollLeft = Math.min(left, Math.max(left + pill.offsetWidth + 128 - strip.clientWidth, strip.scrollLeft));
+  }
+
   /** Arrows go through the pills, as in any radio group. @param {KeyboardEvent} event */
   #roam(event) {
     const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
@@ -128,8 +135,7 @@ export class Chrome {
     }
     for (const pill of this.#schemes.querySelectorAll("button")) {
       const chosen = pill.id === `scheme-${state.scheme}`;
-      // On a phone the pills are a strip: what is chosen comes to its middle.
-      if (chosen && pill.ariaChecked !== "true") this.#schemes.scrollLeft = pill.offsetLeft - (this.#schemes.clientWidth - pill.offsetWidth) / 2;
+      if (chosen && pill.getAttribute("aria-checked") !== "true") this.#uncover(pill);
       setAttr(pill, "aria-checked", String(chosen));
       pill.tabIndex = chosen ? 0 : -1;
     }

@@ -86,20 +86,22 @@ describe("the controls", () => {
     assert.notDeepEqual((await picture(page)).data, before.data);
   });
 
-  test("on a phone the schemes are one line, with the chosen one in the middle of it", async () => {
-    await page.setViewportSize({ width: 390, height: 700 });
-    for (const id of ["modified-butterfly", "catmull-clark", "linear"]) {
-      await cmd(page, `scheme ${id}`);
-      await ready(page, (state, id) => state.shown.scheme === id, id);
-      // The strip glides there.
-      await page.waitForFunction((id) => {
-        const [pill, strip] = [`scheme-${id}`, "schemes"].map((id) => document.getElementById(id)?.getBoundingClientRect());
-        return pill && strip && pill.left >= strip.left + 20 && pill.right <= strip.right - 20;
+  test("on a phone the schemes are one line, which moves to the chosen one", async () => {
+    const phone = await visit(browser, site.url, { renderer: "webgpu", width: 390, height: 700, hash: "#1;open+builtin:cube;level+1" });
+    const ids = (await phone.$$eval("#schemes button", (pills) => pills.map((pill) => pill.id.replace("scheme-", "")))).reverse();
+    for (const id of ids) {
+      await cmd(phone, `scheme ${id}`);
+      await ready(phone, (state, id) => state.scheme === id, id);
+      const [strip, pill, tops] = await phone.evaluate((id) => {
+        const box = (/** @type {string} */ id) => /** @type {HTMLElement} */ (document.getElementById(id)).getBoundingClientRect();
+        return /** @type {const} */ ([box("schemes"), box(`scheme-${id}`), [...document.querySelectorAll("#schemes button")].map((b) => b.getBoundingClientRect().top)]);
       }, id);
-      const rows = await page.$$eval("#schemes button", (pills) => new Set(pills.map((pill) => pill.getBoundingClientRect().top)).size);
-      assert.equal(rows, 1);
+      assert.ok(pill.left >= strip.left + 20 && pill.right <= strip.right - 20, `${id} is clear of the fades`);
+      assert.equal(new Set(tops).size, 1, "one line");
     }
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390, "the page itself does not scroll");
+    assert.equal(await phone.evaluate(() => document.documentElement.scrollWidth), 390, "the page itself does not scroll");
+    assert.deepEqual(phone.errors, []);
+    await phone.context().close();
   });
 
   test("a note that was dismissed is not said again for the same model", async () => {
