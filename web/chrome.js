@@ -133,12 +133,16 @@ export class Chrome {
       button.disabled = what === null;
       button.title = `${id === "undo" ? "Undo" : "Redo"} ${what ?? ""}`.trim();
     }
+    /** @type {HTMLElement | null} */
+    let next = null;
     for (const pill of this.#schemes.querySelectorAll("button")) {
       const chosen = pill.id === `scheme-${state.scheme}`;
-      if (chosen && pill.getAttribute("aria-checked") !== "true") this.#uncover(pill);
+      if (chosen && pill.getAttribute("aria-checked") !== "true") next = pill;
       setAttr(pill, "aria-checked", String(chosen));
       pill.tabIndex = chosen ? 0 : -1;
     }
+    // Now that it is as wide as a chosen one is.
+    if (next) this.#uncover(next);
     for (const item of this.#models.querySelectorAll("button[data-model]")) {
       setAttr(item, "aria-current", String(model?.builtin === true && item.getAttribute("data-model") === model.name));
     }
