@@ -39,20 +39,29 @@ describe("a first visit", () => {
     });
   }
 
-  test("looks the same on both backends", async () => {
-    const pictures = [];
-    for (const renderer of RENDERERS) {
-      const page = await visit(browser, site.url, { renderer });
-      pictures.push(await picture(page));
-      await page.context().close();
-    }
-    const [a, b] = pictures;
-    assert.ok(a && b);
-    const found = difference(a, b);
-    if (found.inside || found.share > 0.001) await Promise.all([keep("first-visit-webgpu", a), keep("first-visit-webgl", b)]);
-    assert.equal(found.inside, 0, `${found.inside} pixels away from edges differ by up to ${found.largest}`);
-    assert.ok(found.share <= 0.001, `${(100 * found.share).toFixed(3)}% of the pixels differ`);
-  });
+  for (const [what, hash] of [
+    ["a first visit", ""],
+    ["polygons of a dual scheme", "#1;open+builtin:mouse;scheme+doo-sabin;level+2;view+edges=on"],
+    ["an open surface of turned triangles", "#1;open+builtin:grid;scheme+sqrt3;level+3;view+edges=on"],
+  ]) {
+    test(`looks the same on both backends: ${what}`, async () => {
+      const pictures = [];
+      for (const renderer of RENDERERS) {
+        const page = await visit(browser, site.url, { renderer, hash });
+        assert.ok((await state(page)).shown.level > 0);
+        pictures.push(await picture(page));
+        assert.deepEqual(page.errors, []);
+        await page.context().close();
+      }
+      const [a, b] = pictures;
+      assert.ok(a && b);
+      assert.ok(content(a).detail > 0.002);
+      const found = difference(a, b);
+      if (found.inside || found.share > 0.001) await Promise.all([keep("backends-webgpu", a), keep("backends-webgl", b)]);
+      assert.equal(found.inside, 0, `${found.inside} pixels away from edges differ by up to ${found.largest}`);
+      assert.ok(found.share <= 0.001, `${(100 * found.share).toFixed(3)}% of the pixels differ`);
+    });
+  }
 
   for (const renderer of RENDERERS) {
     test(`is lit from above on ${renderer}`, async () => {

@@ -3,7 +3,7 @@
 //! One way in and one way out, so that the page holds one copy of each and both platforms agree on every bit. Reading is
 //! exact (the f64 nearest to the decimal). Writing rounds to decimal places and then takes the fewest digits that read back.
 //!
-//! The standard library's reader carries a table of ten kilobytes for speed that a command line never needs; the compact
+//! The standard library's reader carries a table of ten kilobytes, for speed that a command line never needs; the compact
 //! one of `lexical` computes what it looks up.
 
 /// A finite number: `3`, `-0.5`, `1e-3`.

@@ -1,6 +1,6 @@
 //! Sorting by integer keys: one compiled sort for whatever the kernel orders.
 //!
-//! Every type that is sorted costs a module for the web some eight kilobytes of machine code, which is more than most of
+//! Every type that is sorted costs a module for the web two to ten kilobytes of machine code, which is more than most of
 //! the things that are sorted. So they are ordered by 64-bit keys, ties by the number of the row: the order is the same
 //! whatever the algorithm. Cost: n log n, in place.
 

@@ -167,9 +167,13 @@ proptest! {
                 prop_assert_eq!(validate(&mesh.topology), Ok(()));
                 mesh.stats();
                 let mesh = std::sync::Arc::new(mesh);
-                for scheme in SCHEMES.iter().filter(|s| s.info.split(mesh.is_triangles(), limn_mesh::Boundary::EdgeAndCorner).is_some()) {
-                    let plan = limn_mesh::Plan::new(scheme, limn_mesh::Boundary::EdgeAndCorner, 2);
+                let boundaries = [limn_mesh::Boundary::EdgeOnly, limn_mesh::Boundary::EdgeAndCorner];
+                let takes = |s: &&'static limn_mesh::Entry| s.info.split(mesh.is_triangles(), boundaries[0]).is_some();
+                for (scheme, boundary) in SCHEMES.iter().filter(takes).flat_map(|s| boundaries.map(|b| (s, b))) {
+                    let plan = limn_mesh::Plan::new(scheme, boundary, 2);
                     let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
+                    prop_assert_eq!(refined.points.len() as u64, refined.counts.vertices, "{}", scheme.info.id);
+                    prop_assert_eq!(refined.faces.count() as u64, refined.counts.faces, "{}", scheme.info.id);
                     if scheme.info.group == "dual" {
                         continue; // Its vertices are corners.
                     }

@@ -231,6 +231,43 @@ fn faces_know_their_source() {
     }
 }
 
+/// Two cubes beside each other: whatever the scheme, a face's source lies in the cube that the face lies in, and every
+/// source has faces.
+#[test]
+fn faces_of_every_scheme_know_their_part() {
+    let cube = (limn_mesh::shape("cube").unwrap().build)();
+    let mut two = Soup::default();
+    for shift in [-10.0, 10.0] {
+        let base = two.positions.len() as u32;
+        two.positions.extend(cube.positions.iter().map(|p| [p[0] + shift, p[1], p[2]]));
+        (0..6).for_each(|f| two.push_face(&cube.face(f).iter().map(|v| v + base).collect::<Vec<_>>()));
+    }
+    let mut schemes = std::collections::BTreeSet::new();
+    for soup in [two.clone(), limn_mesh::triangulate_soup(&two).0] {
+        let mesh = build(&soup);
+        for plan in (1..=3).flat_map(|level| plans(&mesh, level)) {
+            let refined = refine(&mesh, plan, u64::MAX).unwrap();
+            schemes.insert(plan.scheme.info.id);
+            for f in 0..refined.faces.count() {
+                let source = refined.face_source(f as u32) as usize;
+                let left = refined.points[refined.faces.face(f)[0] as usize][0] < 0.0;
+                assert_eq!(
+                    left,
+                    source < soup.face_count() / 2,
+                    "{}, level {}: face {f}",
+                    plan.scheme.info.id,
+                    plan.level
+                );
+            }
+            // Every source has children.
+            let sources: std::collections::BTreeSet<u32> =
+                (0..refined.faces.count() as u32).map(|f| refined.face_source(f)).collect();
+            assert_eq!(sources.len(), soup.face_count(), "{}", plan.scheme.info.id);
+        }
+    }
+    assert_eq!(schemes.len(), SCHEMES.len());
+}
+
 #[test]
 fn copies_along_cut_edges_stay_equal() {
     for (name, soup) in [

@@ -12,7 +12,7 @@
 //!
 //! Boundaries are the J-spline of their curve: the same with the two neighbours along it (s = 0 is the four-point curve, s =
 //! 1 the cubic B-spline). With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
-//! never stored the moved vertices, oscillation and all. Cost: about 40 ns an output face (two rings an edge).
+//! never stored the moved vertices, oscillation and all. Cost: about 50 ns an output face (two rings an edge).
 
 use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
 use crate::sink::{Row, Sink};

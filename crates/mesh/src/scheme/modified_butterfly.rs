@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Beyond a boundary, wings are reflections, which at a regular boundary vertex (three faces) keeps linear functions
-//! linear; the boundary is the four-point curve. C1 everywhere. Cost: about 25 ns an output face, ten times that beside
+//! linear; the boundary is the four-point curve. C1 everywhere. Cost: about 35 ns an output face, more beside
 //! extraordinary vertices.
 
 use super::butterfly::{eight_points, four_points};

@@ -8,7 +8,7 @@
 //!
 //! Boundaries change in every second step only, when each edge is cut in three by the cubic B-spline's ternary rule:
 //! (4, 19, 4) / 27 for old vertices, (1, 16, 10) / 27 and its mirror image for new ones. Corners end the curve.
-//! C2 but at extraordinary vertices, C1 there. Cost: about 25 ns an output face.
+//! C2 but at extraordinary vertices, C1 there. Cost: about 35 ns an output face.
 
 use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
