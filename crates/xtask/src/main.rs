@@ -7,7 +7,7 @@
 //!             dist  ──► the same, profile `dist` ──► dist/
 //!             test  ──► toolchain, npm, Chromium, Vulkan ──► native, wasm and browser tests
 //!             tidy  ──► rustfmt, clippy, tsc, house rules
-//!             bench ──► cargo bench
+//!             bench ──► bench/, cargo bench
 //! ```
 //!
 //! Each wasm module has a target folder of its own: two feature sets in one folder relink each other at every start.
@@ -44,8 +44,10 @@ Usage: cargo xtask <command> [options]
             --filter TEXT    only tests whose names contain this
             --quick          the page's tests on quickly built modules, without the budget of its weight
   tidy    rustfmt, clippy, tsc and the house rules
-  bench   the kernel's benchmarks
-            --wasm           once more as WebAssembly under Node
+  bench   the kernel beside the other Rust crates for subdivision, in one table
+            --fresh          on freshly mapped memory
+            --levels         the kernel alone, level by level
+            --wasm           the same, and once more as WebAssembly under Node
   screenshots
           pictures of the page, on a laptop and a phone, dark and light, under target/screenshots
   help    this text

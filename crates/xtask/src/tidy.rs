@@ -40,6 +40,8 @@ pub fn run(arguments: Arguments) -> Result<()> {
     toolchain::ensure_components()?;
     say("rustfmt");
     check("rustfmt", process::succeeds(process::cargo().args(["fmt", "--all", "--check"]))?);
+    let bench = ["fmt", "--manifest-path", "bench/Cargo.toml", "--check"];
+    check("rustfmt on bench/", process::succeeds(process::cargo().args(bench))?);
 
     toolchain::ensure_packages()?;
     say("tsc --checkJs on web/");
