@@ -196,7 +196,7 @@ impl Document {
         let before = self.state.as_ref().filter(|_| reload);
         if let Some(before) = before {
             state.edits = before.edits.clone();
-            state.settings = before.settings;
+            state.settings = before.settings.clone();
             state.rebuild()?;
             if let Err(error) = state.settle(self.budget) {
                 let CommandError::Refine(RefineError::TooLarge { fits, .. }) = error else { return Err(error) };
@@ -309,7 +309,7 @@ impl Document {
                 settings.params = parameters::read(&entry.info, parameters)?;
                 settings.scheme = entry;
             }
-            Command::Boundary(boundary) => settings.boundary = *boundary,
+            Command::Boundary(boundary) => settings.rules.boundary = *boundary,
             Command::Level(n) => {
                 settings.level = u32::try_from(*n).map_err(|_| CommandError::NegativeLevel(*n))?;
             }
@@ -390,15 +390,13 @@ impl Document {
     /// leave 64 bits. Cost: constant.
     pub fn predict(&self, level: u32) -> Option<Prediction> {
         let state = self.state.as_ref()?;
-        predict(&state.built.mesh, &Plan { level, ..state.plan() }).ok().flatten()
+        predict(&state.built.mesh, &state.plan().to(level)).ok().flatten()
     }
 
     /// The highest level that fits the budget under the present scheme; 0 without a model.
     pub fn highest_level(&self) -> u32 {
         let fits = |level: &u32| {
-            self.state
-                .as_ref()
-                .is_some_and(|s| check(&s.built.mesh, Plan { level: *level, ..s.plan() }, self.budget).is_ok())
+            self.state.as_ref().is_some_and(|s| check(&s.built.mesh, &s.plan().to(*level), self.budget).is_ok())
         };
         (1..=32).take_while(fits).last().unwrap_or(0)
     }
@@ -429,7 +427,9 @@ impl Document {
             // Building the triangles meets the same trouble again: only what is new is said.
             remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
         }
-        if state.built.mesh.uv.is_some() && state.plan().split(&state.built.mesh).is_ok_and(|split| split.stores()) {
+        // Said at level 0 too, where nothing is lost yet.
+        let plan = state.plan();
+        if state.built.mesh.uv.is_some() && plan.to(plan.level.max(1)).drops_uv(&state.built.mesh) {
             let name = state.settings.scheme.info.name;
             remarks.push(Remark::new(&format!("texture coordinates are left out: {name} does not carry them"), false));
         }

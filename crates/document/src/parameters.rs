@@ -49,7 +49,7 @@ pub fn command(plan: &Plan) -> Command {
 pub fn prefix(plan: &Plan, at: usize) -> String {
     let info = &plan.scheme.info;
     let Some(param) = info.params.get(at) else { return String::new() };
-    let mut others = *plan;
+    let mut others = plan.clone();
     others.params.set(info, at, param.domain.default());
     format!("{} {}=", command(&others), param.key)
 }

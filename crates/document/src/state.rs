@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use limn_formats::Model;
 use limn_formats::parcel::Notice;
-use limn_mesh::{Accepts, Boundary, Entry, Job, Mesh, Params, Plan, RefineError, Weld, predict, scheme};
+use limn_mesh::{
+    Accepts, Boundary, Entry, Fairing, Job, Mesh, Params, Plan, RefineError, Rules, Run, Weld, predict, scheme,
+};
 
 use crate::build::{Base, BuildError, Built, Edit, Remark};
 use crate::command::Command;
@@ -16,14 +18,18 @@ use crate::parameters;
 use crate::source::Source;
 
 /// What `settings` of the last-wins kind are set to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Settings {
     /// None is the model's own.
     pub weld: Option<Weld>,
     pub quads: bool,
     pub scheme: &'static Entry,
     pub params: Params,
-    pub boundary: Boundary,
+    /// Schemes of later steps.
+    pub later: Vec<Run>,
+    pub rules: Rules,
+    pub fairings: Vec<Fairing>,
+    pub limit: bool,
     pub level: u32,
 }
 
@@ -52,7 +58,10 @@ impl State {
             quads: false,
             scheme,
             params: Params::default(),
-            boundary: Boundary::default(),
+            later: Vec::new(),
+            rules: Rules::default(),
+            fairings: Vec::new(),
+            limit: false,
             level: 0,
         };
         let imported = notices.iter().map(|n| Remark::new(&n.text, n.minor)).collect();
@@ -61,8 +70,8 @@ impl State {
     }
 
     pub fn plan(&self) -> Plan {
-        let Settings { scheme, params, boundary, level, .. } = self.settings;
-        Plan { scheme, params, boundary, level }
+        let Settings { scheme, params, later, rules, fairings, limit, level, .. } = self.settings.clone();
+        Plan { scheme, params, later, rules, fairings, limit, level }
     }
 
     /// Whether the two lead to the same picture and the same text.
@@ -86,7 +95,7 @@ impl State {
             Accepts::Triangles => self.base.triangles(&self.model)?,
             Accepts::Polygons | Accepts::Both => self.base.polygons.clone(),
         };
-        check(&self.built.mesh, self.plan(), budget)?;
+        check(&self.built.mesh, &self.plan(), budget)?;
         Ok(())
     }
 
@@ -102,7 +111,7 @@ impl State {
             Edit::Scale(factor) => Command::Scale(*factor),
         }));
         commands.push(parameters::command(&self.plan()));
-        commands.extend((s.boundary != Boundary::default()).then_some(Command::Boundary(s.boundary)));
+        commands.extend((s.rules.boundary != Boundary::default()).then_some(Command::Boundary(s.rules.boundary)));
         commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
         commands
     }
@@ -113,10 +122,10 @@ pub(crate) fn find_scheme(id: &str) -> Result<&'static Entry, CommandError> {
 }
 
 /// Refuses a plan that does not fit, with numbers. Cost: constant.
-pub(crate) fn check(mesh: &Arc<Mesh>, plan: Plan, budget: u64) -> Result<(), RefineError> {
-    match predict(mesh, &plan)? {
+pub(crate) fn check(mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<(), RefineError> {
+    match predict(mesh, plan)? {
         // The kernel's own check also counts what 32 bits can number, and words the refusal.
         Some(p) if p.bytes <= budget && p.counts.corners < 1 << 31 => Ok(()),
-        _ => Job::new(mesh.clone(), plan, budget).map(drop),
+        _ => Job::new(mesh.clone(), plan.clone(), budget).map(drop),
     }
 }

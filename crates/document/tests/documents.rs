@@ -51,7 +51,7 @@ fn opening_chooses_scheme_and_level() {
     run(&mut d, "boundary edge-only");
     assert_eq!(run(&mut d, "open builtin:cube"), Outcome::Model);
     assert_eq!(d.text(), "version 1\nopen builtin:cube\nscheme catmull-clark\nlevel 0\n");
-    assert_eq!(d.plan().unwrap().boundary, Boundary::EdgeAndCorner);
+    assert_eq!(d.plan().unwrap().rules.boundary, Boundary::EdgeAndCorner);
     assert_eq!(d.link(), "#1;open+builtin:cube;scheme+catmull-clark;level+0");
     assert_eq!(Document::new(1).link(), "");
 }
@@ -368,7 +368,7 @@ fn groups_are_hidden_by_name() {
 #[test]
 fn info_is_one_object() {
     let mut d = document("open builtin:cube level 1");
-    let refined = refine(d.mesh().unwrap(), d.plan().unwrap(), BUDGET).unwrap();
+    let refined = refine(d.mesh().unwrap(), &d.plan().unwrap(), BUDGET).unwrap();
     let info = d.info(Some(&refined.points)).unwrap();
     let bytes = d.predict(1).unwrap().bytes;
     assert_eq!(

@@ -39,7 +39,7 @@ fn exports_keep_order_groups_and_materials() {
     load(&mut d, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\ng a\nf 1 2 3 4\ng b\nf 2 5 6 3\n");
     run(&mut d, "scheme linear");
     run(&mut d, "level 1");
-    let refined = refine(d.mesh().unwrap(), d.plan().unwrap(), BUDGET).unwrap();
+    let refined = refine(d.mesh().unwrap(), &d.plan().unwrap(), BUDGET).unwrap();
     let files = d.export(&refined, "dir/out.OBJ").unwrap();
     assert_eq!(files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["out.OBJ"]);
     let text = String::from_utf8(files[0].bytes.clone()).unwrap();
@@ -64,7 +64,7 @@ fn exports_keep_order_groups_and_materials() {
 
 /// The `v` lines and the number of different ends of the `f` lines of an export.
 fn written(d: &Document) -> Vec<String> {
-    let refined = refine(d.mesh().unwrap(), d.plan().unwrap(), BUDGET).unwrap();
+    let refined = refine(d.mesh().unwrap(), &d.plan().unwrap(), BUDGET).unwrap();
     let files = d.export(&refined, "out.obj").unwrap();
     String::from_utf8(files[0].bytes.clone()).unwrap().lines().map(str::to_owned).collect()
 }

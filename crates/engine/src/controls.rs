@@ -209,7 +209,7 @@ pub fn values(document: &Document) -> Values {
         values.push(("weld", weld.to_owned()));
     }
     if let Some(plan) = document.plan() {
-        let rule = match plan.boundary {
+        let rule = match plan.rules.boundary {
             Boundary::EdgeOnly => "edge-only",
             Boundary::EdgeAndCorner => "edge-and-corner",
         };

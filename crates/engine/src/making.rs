@@ -76,8 +76,8 @@ pub struct Made {
 
 impl Made {
     /// Whether this is `plan` of `mesh` in that layout.
-    pub fn is(&self, mesh: &Arc<Mesh>, plan: Plan, corners: bool) -> bool {
-        Arc::ptr_eq(self.refined.mesh(), mesh) && self.plan == plan && self.corners == corners
+    pub fn is(&self, mesh: &Arc<Mesh>, plan: &Plan, corners: bool) -> bool {
+        Arc::ptr_eq(self.refined.mesh(), mesh) && self.plan == *plan && self.corners == corners
     }
 
     /// Bytes on the CPU.
@@ -153,7 +153,7 @@ impl Making {
         parts: Arc<Parts>,
         budget: u64,
     ) -> Result<Making, RefineError> {
-        let job = Job::new(mesh.clone(), plan, budget)?;
+        let job = Job::new(mesh.clone(), plan.clone(), budget)?;
         Ok(Making { mesh, plan, corners, parts, stage: Stage::Refine(Box::new(job)), spent: [0.0; 2] })
     }
 
@@ -162,7 +162,7 @@ impl Making {
         let made = Made { corners, ..made.clone() };
         Making {
             mesh: made.refined.mesh().clone(),
-            plan: made.plan,
+            plan: made.plan.clone(),
             corners,
             parts: made.parts.clone(),
             stage: Stage::Build(made, None),
@@ -171,13 +171,13 @@ impl Making {
     }
 
     /// Whether this makes `plan` of `mesh` in that layout.
-    pub fn is(&self, mesh: &Arc<Mesh>, plan: Plan, corners: bool) -> bool {
-        Arc::ptr_eq(&self.mesh, mesh) && self.plan == plan && self.corners == corners
+    pub fn is(&self, mesh: &Arc<Mesh>, plan: &Plan, corners: bool) -> bool {
+        Arc::ptr_eq(&self.mesh, mesh) && self.plan == *plan && self.corners == corners
     }
 
     /// Whether this differs from `plan` of `mesh` in the scheme's parameters at most.
-    pub fn is_but_for_params(&self, mesh: &Arc<Mesh>, plan: Plan, corners: bool) -> bool {
-        self.is(mesh, Plan { params: self.plan.params, ..plan }, corners)
+    pub fn is_but_for_params(&self, mesh: &Arc<Mesh>, plan: &Plan, corners: bool) -> bool {
+        self.is(mesh, &Plan { params: self.plan.params, ..plan.clone() }, corners)
     }
 
     /// The level that is being made.
@@ -216,7 +216,7 @@ impl Making {
                     let refined = Arc::new(job.finish());
                     let made = Made {
                         refined,
-                        plan: self.plan,
+                        plan: self.plan.clone(),
                         corners: self.corners,
                         normals: Arc::default(),
                         parts: self.parts.clone(),
@@ -297,10 +297,10 @@ mod tests {
         let mut document = two_groups();
         document.run("level 2").unwrap();
         let (mesh, plan) = (document.mesh().unwrap(), document.plan().unwrap());
-        let refined = Arc::new(refine(mesh, plan, 1 << 20).unwrap());
+        let refined = Arc::new(refine(mesh, &plan, 1 << 20).unwrap());
         let normals = Arc::new(refined.normals());
         let parts = Arc::new(Parts::of(&document));
-        let made = Made { refined: refined.clone(), plan, corners: false, normals, parts };
+        let made = Made { refined: refined.clone(), plan: plan.clone(), corners: false, normals, parts };
         made.data(|data| {
             let part_of = data.part_of.unwrap();
             for f in 0..refined.faces.count() {
@@ -311,7 +311,7 @@ mod tests {
             assert!(data.is_shared());
             assert_eq!(data.parents, refined.parent_ranges);
         });
-        assert!(made.is(mesh, plan, false) && !made.is(mesh, Plan { level: 1, ..plan }, false));
+        assert!(made.is(mesh, &plan, false) && !made.is(mesh, &plan.to(1), false));
         assert_eq!(made.bytes(), 4 * (refined.points.len() * 6 + refined.faces.corners().len()) as u64);
     }
 }

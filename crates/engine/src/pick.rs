@@ -57,7 +57,7 @@ mod tests {
         let (mesh, _) = Mesh::build(&cube, Weld::Off).unwrap();
         let top = mesh.stats().bounds[1][2];
         let plan = Plan::new(scheme("linear").unwrap(), Boundary::default(), 1);
-        let refined = refine(&Arc::new(mesh), plan, 1 << 20).unwrap();
+        let refined = refine(&Arc::new(mesh), &plan, 1 << 20).unwrap();
         let ray = Ray { origin: Vec3::new(0.1, 0.2, 9.0), direction: Vec3::NEG_Z };
         let found = pick(&refined, &ray, |_| true).unwrap();
         assert!((found - Vec3::new(0.1, 0.2, top)).length() < 1e-5, "{found}");

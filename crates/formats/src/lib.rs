@@ -5,7 +5,7 @@
 //! through [`Files`]. Whatever a file claims, no more memory than [`Limits`] allows is used for it.
 //!
 //! ```text
-//!   bytes + name + siblings ── read ──► Model { soup, groups, materials, images, tags } + warnings
+//!   bytes + name + siblings ── read ──► Model { soup, groups, materials, images } + warnings
 //!   Export { points, faces, ... } ── write_obj ──► .obj (+ .mtl, pictures)
 //!                                 └─ write_glb ──► .glb
 //! ```
@@ -25,7 +25,7 @@ mod write_obj;
 pub use error::{Limits, ReadError, Warning, WarningKind};
 pub use export::{Export, ExportFaces, OutFile, WriteError};
 pub use files::{Files, find};
-pub use model::{Image, Material, Model, Tags};
+pub use model::{Image, Material, Model};
 pub use write_glb::write_glb;
 pub use write_obj::write_obj;
 

@@ -24,8 +24,6 @@ pub struct Model {
     pub triangulated: bool,
     /// How positions should be welded by default: exactly for glTF, which repeats vertices at seams, off for OBJ.
     pub weld: Weld,
-    /// Creases and corners that the file states.
-    pub tags: Tags,
 }
 
 /// The surface of some faces, as far as Limn shows it.
@@ -56,15 +54,6 @@ pub struct Image {
     pub mime: String,
     /// The encoded picture.
     pub bytes: Vec<u8>,
-}
-
-/// Sharpness that the file states. Vertices are 0-based in file order, all in range; sharpness is as written (0 is smooth).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tags {
-    /// Edges by their two vertices. Nothing says yet that such an edge exists.
-    pub creases: Vec<([u32; 2], f32)>,
-    /// Vertices.
-    pub corners: Vec<(u32, f32)>,
 }
 
 /// The linear value of an sRGB component (IEC 61966-2-1). Values outside 0..=1 follow the same curve.

@@ -21,7 +21,7 @@ use limn_mesh::{
 };
 
 use crate::{
-    Files, Limits, Model, ReadError, Tags, Warning,
+    Files, Limits, Model, ReadError, Warning,
     error::{Budget, WarningKind, Warnings},
     model::{linear_to_srgb, model_name, srgb_to_linear},
     mtl::{MaterialTable, library_names},
@@ -94,7 +94,6 @@ struct Reader<'a> {
     colored: usize,
     /// Whether a colour above 1 was seen: then all are 0..255.
     byte_colors: bool,
-    tags: Tags,
     warnings: Warnings,
     /// The largest position index so far and its line.
     highest: (u32, u64),
@@ -124,7 +123,6 @@ impl<'a> Reader<'a> {
             extra_colors: Vec::new(),
             colored: 0,
             byte_colors: false,
-            tags: Tags::default(),
             warnings: Warnings::default(),
             highest: (0, 0),
             highest_uv: (0, 0),
@@ -439,11 +437,11 @@ impl<'a> Reader<'a> {
         if crease {
             for (i, pair) in ids.windows(2).enumerate() {
                 let &[a, b] = pair else { return None };
-                self.tags.creases.push(([a, b], value(i)?));
+                self.soup.marks.creases.push(([a, b], value(i)?));
             }
         } else {
             for (i, id) in ids.iter().enumerate() {
-                self.tags.corners.push((*id, value(i)?));
+                self.soup.marks.corners.push((*id, value(i)?));
             }
         }
         Some(())
@@ -488,7 +486,7 @@ impl<'a> Reader<'a> {
             + soup.uvs.len() as u64 * 8
             + (soup.corners.len() + soup.uv_corners.len()) as u64 * 4
             + (soup.offsets.len() + soup.face_groups.len() + soup.face_materials.len()) as u64 * 4
-            + (self.tags.creases.len() + self.tags.corners.len()) as u64 * 12;
+            + (self.soup.marks.creases.len() + self.soup.marks.corners.len()) as u64 * 12;
         self.budget.check_total("The model", bytes)?;
         let longest = soup.corners.len().max(soup.positions.len()).max(soup.uvs.len()) as u64;
         if longest + 2 * CHECK_EVERY as u64 > u64::from(u32::MAX) {
@@ -524,7 +522,6 @@ impl<'a> Reader<'a> {
             images,
             triangulated: false,
             weld: Weld::Off,
-            tags: self.tags,
         };
         Ok((model, warnings.finish()))
     }
@@ -593,10 +590,10 @@ impl<'a> Reader<'a> {
 
     fn finish_tags(&mut self) {
         let count = self.soup.positions.len() as u32;
-        let before = self.tags.creases.len() + self.tags.corners.len();
-        self.tags.creases.retain(|([a, b], _)| *a < count && *b < count && a != b);
-        self.tags.corners.retain(|(v, _)| *v < count);
-        let gone = before - self.tags.creases.len() - self.tags.corners.len();
+        let before = self.soup.marks.creases.len() + self.soup.marks.corners.len();
+        self.soup.marks.creases.retain(|([a, b], _)| *a < count && *b < count && a != b);
+        self.soup.marks.corners.retain(|(v, _)| *v < count);
+        let gone = before - self.soup.marks.creases.len() - self.soup.marks.corners.len();
         self.warnings.add(WarningKind::TagBroken, gone as u64, || None);
     }
 }

@@ -12,9 +12,9 @@
 //! it is never stored. Unpacking checks every length and never panics. Cost: one copy each way.
 
 use bytemuck::{Pod, pod_collect_to_vec};
-use limn_mesh::{Soup, Weld};
+use limn_mesh::{Marks, Soup, Weld};
 
-use crate::{Export, ExportFaces, Image, Material, Model, Tags};
+use crate::{Export, ExportFaces, Image, Material, Model};
 
 /// A sentence about a model, and whether a page may fold it away.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -236,6 +236,11 @@ impl Writer {
         self.array(&s.colors);
         self.array(&s.face_groups);
         self.array(&s.face_materials);
+        let marks = &s.marks;
+        self.list(&marks.creases, |out, (edge, sharpness)| out.array(&[edge[0], edge[1], sharpness.to_bits()]));
+        self.list(&marks.corners, |out, (vertex, sharpness)| out.array(&[*vertex, sharpness.to_bits()]));
+        self.array(&marks.holes);
+        self.list(&marks.knots, |out, (edge, interval)| out.array(&[edge[0], edge[1], interval.to_bits()]));
         self.list(&m.groups, |out, name| out.text(name));
         self.list(&m.materials, Self::material);
         self.list(&m.images, Self::image);
@@ -247,8 +252,6 @@ impl Writer {
         };
         self.number(kind);
         self.number(fraction.to_bits());
-        self.list(&m.tags.creases, |out, (edge, sharpness)| out.array(&[edge[0], edge[1], sharpness.to_bits()]));
-        self.list(&m.tags.corners, |out, (vertex, sharpness)| out.array(&[*vertex, sharpness.to_bits()]));
     }
 }
 
@@ -326,6 +329,12 @@ impl<'a> Reader<'a> {
                 colors: self.array()?,
                 face_groups: self.array()?,
                 face_materials: self.array()?,
+                marks: Marks {
+                    creases: self.list(|f| f.exactly().map(|[a, b, s]| ([a, b], f32::from_bits(s))))?,
+                    corners: self.list(|f| f.exactly().map(|[v, s]| (v, f32::from_bits(s))))?,
+                    holes: self.array()?,
+                    knots: self.list(|f| f.exactly().map(|[a, b, d]| ([a, b], f32::from_bits(d))))?,
+                },
             },
             groups: self.list(Self::text)?,
             materials: self.list(Self::material)?,
@@ -335,10 +344,6 @@ impl<'a> Reader<'a> {
                 (0, _) => Weld::Off,
                 (1, _) => Weld::Exact,
                 (_, fraction) => Weld::Relative(fraction),
-            },
-            tags: Tags {
-                creases: self.list(|f| f.exactly().map(|[a, b, s]| ([a, b], f32::from_bits(s))))?,
-                corners: self.list(|f| f.exactly().map(|[v, s]| (v, f32::from_bits(s))))?,
             },
         })
     }
@@ -357,8 +362,9 @@ mod tests {
         let (mut model, warnings) = read("a.obj", obj, &files, &Limits::default()).unwrap();
         model.images.push(Image { name: "a.png".into(), mime: "image/png".into(), bytes: vec![1, 2, 3, 4, 5] });
         model.weld = Weld::Relative(1e-4);
+        (model.soup.marks.holes, model.soup.marks.knots) = (vec![1], vec![([0, 1], 2.5)]);
         let notices = warnings.iter().map(Notice::from).collect::<Vec<_>>();
-        assert!(!notices.is_empty() && !model.tags.creases.is_empty() && !model.tags.corners.is_empty());
+        assert!(!notices.is_empty() && !model.soup.marks.creases.is_empty() && !model.soup.marks.corners.is_empty());
         Parcel { name: "a.obj".into(), size: 1 << 40, hash: u64::MAX - 1, result: Ok((model, notices)) }
     }
 

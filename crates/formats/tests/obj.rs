@@ -275,12 +275,12 @@ fn tags() {
     let model = quiet(format!(
         "{SQUARE}f 1 2 3 4\nt crease 2/1/0 0 1 2.5\nt crease 3/2/0 1 2 3 1 10\nt corner 2/1/0 0 3 4\nt crease 2/1/0  2  0\t0.5\n"
     ));
-    assert_eq!(model.tags.creases, [([0, 1], 2.5), ([1, 2], 1.0), ([2, 3], 10.0), ([2, 0], 0.5)]);
-    assert_eq!(model.tags.corners, [(0, 4.0), (3, 4.0)]);
+    assert_eq!(model.soup.marks.creases, [([0, 1], 2.5), ([1, 2], 1.0), ([2, 3], 10.0), ([2, 0], 0.5)]);
+    assert_eq!(model.soup.marks.corners, [(0, 4.0), (3, 4.0)]);
     let (model, warnings) = open(format!(
         "{SQUARE}f 1 2 3 4\nt crease 2/1/0 0 4 2.5\nt corner 1/1/0 x 1\nt crease 999999999999/1/0 1\nt interpolateboundary 1/0/0 2\n"
     ));
-    assert_eq!(model.tags, limn_formats::Tags::default());
+    assert_eq!(model.soup.marks, limn_mesh::Marks::default());
     assert_eq!(
         warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         [

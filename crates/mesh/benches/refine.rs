@@ -51,7 +51,7 @@ impl Table {
         let mesh = build();
         let Some(entry) = scheme(id) else { panic!("{id} is not in the registry") };
         let plan = Plan::new(entry, Boundary::default(), level);
-        let run = |mesh: &Arc<Mesh>| refine(mesh, plan, u64::MAX).unwrap_or_else(|e| panic!("{e}"));
+        let run = |mesh: &Arc<Mesh>| refine(mesh, &plan, u64::MAX).unwrap_or_else(|e| panic!("{e}"));
         let refined = run(&mesh);
         let faces = refined.faces.count() as f64;
         let runs = if faces > 1e6 { 9 } else { 21 };

@@ -17,7 +17,7 @@
 //! let cube = (shapes::shape("cube").unwrap().build)();
 //! let (mesh, _report) = Mesh::build(&cube, Weld::Off)?;
 //! let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 3);
-//! let refined = refine(&Arc::new(mesh), plan, 1 << 30)?;
+//! let refined = refine(&Arc::new(mesh), &plan, 1 << 30)?;
 //! assert_eq!(refined.counts.faces, 6 * 4 * 4 * 4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -26,9 +26,12 @@
 //! multiply-add, transcendental functions from `libm`, no hash map is iterated.
 
 mod connect;
+pub mod fairing;
+pub mod marks;
 pub mod mesh;
 pub mod order;
 pub mod pair;
+pub mod plan;
 pub mod refine;
 pub mod refined;
 pub mod report;
@@ -42,14 +45,19 @@ mod track;
 pub mod triangulate;
 mod weld;
 
+pub use fairing::Fairing;
 pub use mesh::{Mesh, Stats, TopologyError};
-pub use refine::{Job, Plan, Prediction, RefineError, grouped, memory, predict, refine};
+pub use plan::{Plan, Run};
+pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
-pub use scheme::{Accepts, Boundary, Domain, Entry, Family, Info, Param, Params, SCHEMES, scheme};
+pub use scheme::{
+    Accepts, Boundary, Decay, Domain, Entry, FaceVarying, Family, Info, Param, Params, Rules, SCHEMES, TriangleRule,
+    scheme,
+};
 pub use shapes::{SHAPES, Shape, shape};
-pub use soup::{NONE, Soup};
-pub use split::{FaceKind, Split};
+pub use soup::{Marks, NONE, Soup};
+pub use split::{FaceKind, FaceShape, Split};
 pub use topology::{Connectivity, Counts, Topology};
 pub use triangulate::{triangulate, triangulate_soup};
 pub use weld::{Weld, bounds};

@@ -11,8 +11,10 @@
 //! them. Cost: linear in corners, about 60 ns each. Source of the invariants: [`crate::topology`].
 
 use crate::connect::{self, Matching};
+use crate::marks;
 use crate::report::{Note, Report};
 use crate::soup::{NONE, Soup};
+use crate::split::FaceShape;
 use crate::topology::{Connectivity, Counts, Topology, is_boundary};
 use crate::weld::{Weld, bounds, weld};
 
@@ -29,6 +31,15 @@ pub struct Mesh {
     pub uv: Option<UvChannel>,
     /// Vertices that every scheme keeps where they are; empty if there are none.
     pub sharp: Vec<bool>,
+    /// The sharpness of each edge, 0 smooth, from [`crate::marks::INFINITE`] on for ever; empty if all are smooth.
+    pub edge_sharpness: Vec<f32>,
+    /// The sharpness of each vertex; empty if all are smooth.
+    pub vertex_sharpness: Vec<f32>,
+    /// Faces that are refined and not shown; empty if there are none.
+    pub holes: Vec<bool>,
+    /// Knot intervals of half-edge `h`: at its origin toward its target in `2h`, at its target toward its origin in
+    /// `2h + 1`; empty if all are 1.
+    pub knots: Vec<f32>,
     /// The lowest position index of each vertex's class. Copies made by splitting share it.
     pub vertex_source: Vec<u32>,
     /// The soup's face behind each face.
@@ -38,6 +49,7 @@ pub struct Mesh {
     /// Whether some part has one side only (it was cut to be oriented).
     pub one_sided: bool,
     counts: Counts,
+    shape: FaceShape,
 }
 
 /// Texture coordinates as a second vertex array on the same half-edges: where two faces disagree about an edge, the twin
@@ -134,6 +146,8 @@ impl Mesh {
             Topology::assemble(faces.offsets.clone(), &faces.corners, soup.positions.len(), &m.mate);
         let (sharp, split) = tie(&topology, &vertex_source, soup.positions.len());
         report(&mut notes, &m, &faces, split);
+        let marks::Resolved { edge_sharpness, vertex_sharpness, holes, knots } =
+            marks::resolve(&soup.marks, &topology, &weld_class, &vertex_source, &faces.source, &mut notes);
 
         let positions = vertex_source.iter().map(|&s| soup.positions[s as usize]).collect();
         let colors = if soup.colors.is_empty() {
@@ -144,17 +158,27 @@ impl Mesh {
         let uv = (!soup.uvs.is_empty()).then(|| seams(soup, &topology, &faces, &m.mate));
         let one_sided = !m.one_sided.is_empty();
         let counts = topology.counts();
+        let shape = match topology.uniform_degree() {
+            Some(3) => FaceShape::Triangles,
+            Some(4) => FaceShape::Quads,
+            _ => FaceShape::Polygons,
+        };
         let mesh = Mesh {
             topology,
             positions,
             colors,
             uv,
             sharp,
+            edge_sharpness,
+            vertex_sharpness,
+            holes,
+            knots,
             vertex_source,
             face_source: faces.source,
             weld_class,
             one_sided,
             counts,
+            shape,
         };
         Ok((mesh, Report { notes }))
     }
@@ -166,7 +190,12 @@ impl Mesh {
 
     /// Whether every face is a triangle.
     pub fn is_triangles(&self) -> bool {
-        self.topology.uniform_degree() == Some(3)
+        self.shape == FaceShape::Triangles
+    }
+
+    /// What its faces look like.
+    pub fn face_shape(&self) -> FaceShape {
+        self.shape
     }
 
     /// Facts about the shape. Cost: linear.

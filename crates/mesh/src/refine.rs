@@ -11,27 +11,16 @@
 //! Cost: about 20 ns an output quad, 12 a triangle, a third of it in the levels before the last. Memory: [`Prediction`].
 //! Limit: 2^31 - 1 corners in the last level, whatever the budget.
 
+use crate::fairing;
 use crate::mesh::Mesh;
+use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues};
-use crate::scheme::{Boundary, Entry, Params, Tags};
-use crate::sink::{Cursor, Source};
+use crate::scheme::Tags;
+use crate::sink::{Cursor, Record, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Counts};
 use crate::track::{Owned, Stage, Track, weigh};
 use std::sync::Arc;
-
-/// What to refine by, and how far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
-    /// The scheme.
-    pub scheme: &'static Entry,
-    /// Its parameters.
-    pub params: Params,
-    /// The boundary rule.
-    pub boundary: Boundary,
-    /// How many times; 0 is the mesh itself.
-    pub level: u32,
-}
 
 /// What a plan will make, in closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +55,16 @@ pub enum RefineError {
         face: u32,
         /// How many corners it has.
         corners: u32,
+    },
+    /// The same at a later level, where another scheme made the faces.
+    #[error(
+        "{scheme} refines triangles only, and the faces of level {level} are not; put `scheme poke from={level}` between"
+    )]
+    NeedsTrianglesAt {
+        /// The scheme's name.
+        scheme: &'static str,
+        /// The level.
+        level: u32,
     },
 }
 
@@ -109,93 +108,69 @@ pub fn grouped(n: u64) -> String {
 /// One more than the corners that fit 32-bit half-edges.
 const LARGEST: u64 = 1 << 31;
 
-impl Plan {
-    /// A plan with the scheme's own parameters.
-    pub fn new(scheme: &'static Entry, boundary: Boundary, level: u32) -> Plan {
-        Plan { scheme, params: Params::default(), boundary, level }
-    }
-
-    /// What rules have to know of the plan, and of the sharp vertices.
-    pub(crate) fn tags<'a>(&self, sharp: &'a [bool]) -> Tags<'a> {
-        Tags { boundary: self.boundary, sharp, lone: &[], params: self.params.of(&self.scheme.info) }
-    }
-
-    /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
-    pub(crate) fn kept(&self, mesh: &Mesh) -> Vec<bool> {
-        let (t, tags) = (&mesh.topology, self.tags(&mesh.sharp));
-        (0..t.vertices()).map(|v| tags.is_sharp(t, v)).collect()
-    }
-
-    /// The split that the plan uses on `mesh`.
-    ///
-    /// # Errors
-    /// [`RefineError::NeedsTriangles`].
-    pub fn split(&self, mesh: &Mesh) -> Result<Split, RefineError> {
-        self.scheme.info.split(mesh.is_triangles(), self.boundary).ok_or_else(|| {
-            let t = &mesh.topology;
-            let odd = (0..t.faces()).find(|&f| t.face_half_edges(f).len() != 3).unwrap_or(0);
-            RefineError::NeedsTriangles {
-                scheme: self.scheme.info.name,
-                face: mesh.face_source[odd as usize],
-                corners: t.face_half_edges(odd).len() as u32,
-            }
-        })
-    }
-}
-
-/// Counts after `level` steps of `split`, and those one step before.
-fn counts_at(split: Split, mut c: Counts, level: u32) -> Option<(Counts, Counts)> {
-    let mut before = c;
-    for step in 0..level {
-        before = c;
-        c = split.at(step).counts(c)?;
-    }
-    Some((c, before))
-}
-
-/// Predicts what `plan` makes of `mesh`; none if it leaves 64 bits. Cost: constant (the level is at most 32 steps).
+/// Predicts what `plan` makes of `mesh`; none if it leaves 64 bits. Cost: constant (a level takes at most 32 steps).
 ///
 /// # Errors
-/// [`RefineError::NeedsTriangles`].
+/// [`RefineError::NeedsTriangles`] and [`RefineError::NeedsTrianglesAt`].
 pub fn predict(mesh: &Mesh, plan: &Plan) -> Result<Option<Prediction>, RefineError> {
-    Ok(prediction(mesh, plan.split(mesh)?, plan.level))
-}
-
-fn prediction(mesh: &Mesh, split: Split, level: u32) -> Option<Prediction> {
-    let (counts, before) = counts_at(split, mesh.counts(), level)?;
+    let mut counts = [(mesh.counts(), mesh.counts()), (Counts::default(), Counts::default())];
+    let uv = mesh.uv.as_ref().filter(|_| !plan.drops_uv(mesh));
+    if let Some(uv) = uv {
+        counts[1] = (uv.counts, uv.counts);
+    }
+    let (mut last, mut tracked) = (None, false);
+    for step in plan.walk(mesh) {
+        let step = step?;
+        for (now, before) in &mut counts {
+            let Some(next) = step.split.counts(*now) else { return Ok(None) };
+            (*now, *before) = (next, *now);
+        }
+        tracked |= last.is_some_and(|l: Step| !same_way(&l, &step));
+        last = Some(step);
+    }
     let wide = if mesh.colors.is_empty() { 0 } else { 16 };
+    let stores = last.is_some_and(|s| s.split.stores());
     // Result: points, corners. Peak beside it: the parent's points and, from level 1 on, its stored half-edges.
-    let track = |c: Counts, b: Counts, value: u128| {
+    let track = |(c, b): (Counts, Counts), value: u128| {
         let (c, b) = ((c.vertices, c.corners), (b.vertices, b.corners));
-        let words = if split.stores() { 5 } else { 2 };
-        let stored = if level > 1 { 4 * words * u128::from(b.1) + 4 * u128::from(b.0) } else { 0 };
-        let parent = if level > 0 { value * u128::from(b.0) } else { 0 };
-        value * u128::from(c.0) + 4 * u128::from(c.1) + parent + stored
+        let words = if last.is_some_and(|s| s.stored) { 5 } else { 2 };
+        let stored = if plan.level > 1 { 4 * words * u128::from(b.1) + 4 * u128::from(b.0) } else { 0 };
+        let parent = if plan.level > 0 { value * u128::from(b.0) } else { 0 };
+        let closing =
+            if plan.closes() { value * u128::from(c.0) + 8 * u128::from(c.1) + 4 * u128::from(c.0) } else { 0 };
+        value * u128::from(c.0) + 4 * u128::from(c.1) + parent + stored + closing
     };
-    let mut bytes = track(counts, before, 12 + wide);
-    if split.stores() {
-        // Faces are listed with where they begin and where they came from.
-        bytes += 8 * u128::from(counts.faces);
-    } else if let Some(uv) = &mesh.uv {
-        let (c, b) = counts_at(split, uv.counts, level)?;
-        bytes += track(c, b, 16);
+    let mut bytes = track(counts[0], 12 + wide);
+    // Faces may be listed with where they begin and where they came from.
+    bytes += u128::from(counts[0].0.faces)
+        * if stores {
+            8
+        } else if tracked {
+            4
+        } else {
+            0
+        };
+    if uv.is_some() {
+        bytes += track(counts[1], 16);
     }
-    Some(Prediction { counts, bytes: bytes.min(u128::from(u64::MAX)) as u64 })
+    Ok(Some(Prediction { counts: counts[0].0, bytes: bytes.min(u128::from(u64::MAX)) as u64 }))
 }
 
-fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Split, RefineError> {
-    let split = plan.split(mesh)?;
-    let fits = |level| prediction(mesh, split, level).filter(|p| p.bytes <= budget && p.counts.corners < LARGEST);
-    if plan.level == 0 || fits(plan.level).is_some() {
-        return Ok(split);
+/// Whether the faces' past is arithmetic over both steps, as it is for one.
+fn same_way(a: &Step, b: &Step) -> bool {
+    a.split == b.split || a.split.stores() && b.split.stores()
+}
+
+/// The steps of a plan that fits the budget.
+fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Vec<Step>, RefineError> {
+    let fits = |p: &Option<Prediction>| p.is_some_and(|p| p.bytes <= budget && p.counts.corners < LARGEST);
+    let predicted = predict(mesh, plan)?;
+    if plan.level == 0 || fits(&predicted) {
+        return plan.walk(mesh).collect();
     }
-    let highest = (1..plan.level).take_while(|&l| fits(l).is_some()).last().unwrap_or(0);
-    Err(RefineError::TooLarge {
-        level: plan.level,
-        predicted: prediction(mesh, split, plan.level),
-        budget,
-        fits: highest,
-    })
+    let reachable = |level: &u32| predict(mesh, &plan.to(*level)).is_ok_and(|p| fits(&p));
+    let highest = (1..plan.level).take_while(reachable).last().unwrap_or(0);
+    Err(RefineError::TooLarge { level: plan.level, predicted, budget, fits: highest })
 }
 
 /// A refinement under way. Drop it to cancel.
@@ -203,7 +178,7 @@ fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Split, RefineError> {
 pub struct Job {
     mesh: Arc<Mesh>,
     plan: Plan,
-    split: Split,
+    steps: Vec<Step>,
     geometry: Track,
     uv: Track,
     rows: u64,
@@ -216,31 +191,43 @@ impl Job {
     /// # Errors
     /// [`RefineError`], before anything is allocated.
     pub fn new(mesh: Arc<Mesh>, plan: Plan, budget: u64) -> Result<Job, RefineError> {
-        let split = admit(&mesh, &plan, budget)?;
+        let steps = admit(&mesh, &plan, budget)?;
         let mut total = 0;
-        let uv = mesh.uv.as_ref().filter(|_| !split.stores());
+        let uv = mesh.uv.as_ref().filter(|_| !steps.iter().any(|s| s.split.stores()));
         let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (uv.map(|u| u.counts), true)];
         for (i, (counts, wide)) in tracks.into_iter().enumerate() {
             let Some(mut c) = counts else { continue };
-            for level in 1..=plan.level {
-                let Some(next) = split.at(level - 1).counts(c) else { break };
+            let faired = |level: u32, c: &Counts| {
+                let passes = if i == 0 { plan.fairing(level).map_or(0, |f| f.passes()) } else { 0 };
+                u64::from(passes) * c.vertices
+            };
+            for (level, step) in (1..).zip(&steps) {
+                total += faired(level - 1, &c);
+                let Some(next) = step.split.counts(c) else { break };
                 let values = u64::from(i == 0) + u64::from(wide);
                 total += values * next.vertices;
-                if !split.stores() {
-                    total += c.faces + if level < plan.level { c.vertices } else { 0 };
+                if !step.split.stores() {
+                    total += c.faces;
+                    if level < plan.level || (i == 0 && plan.closes()) {
+                        total += c.vertices;
+                    }
+                    if level == plan.level && i == 0 && plan.closes() {
+                        total += c.faces;
+                    }
                 }
                 c = next;
             }
+            total += faired(plan.level, &c);
         }
-        let (geometry, uv) = (Track::new(&mesh, false, &plan, split), Track::new(&mesh, true, &plan, split));
-        Ok(Job { mesh, plan, split, geometry, uv, rows: 0, total: total.max(1) })
+        let (geometry, uv) = (Track::new(&mesh, false, &plan, &steps), Track::new(&mesh, true, &plan, &steps));
+        Ok(Job { mesh, plan, steps, geometry, uv, rows: 0, total: total.max(1) })
     }
 
     /// Works off about `rows` rows (one new point, or one face's half-edges; some 50 ns each) and says whether all is done.
     pub fn step(&mut self, rows: usize) -> bool {
         let mut quota = rows;
-        self.geometry.step(&self.mesh, &self.plan, self.split, &mut quota);
-        self.uv.step(&self.mesh, &self.plan, self.split, &mut quota);
+        self.geometry.step(&self.mesh, &self.plan, &self.steps, &mut quota);
+        self.uv.step(&self.mesh, &self.plan, &self.steps, &mut quota);
         self.rows += (rows - quota) as u64;
         self.geometry.stage == Stage::Done && self.uv.stage == Stage::Done
     }
@@ -275,7 +262,7 @@ impl Job {
             return Refined {
                 level,
                 counts: self.mesh.counts(),
-                points: self.mesh.positions.clone(),
+                points: self.geometry.points.unwrap_or_else(|| self.mesh.positions.clone()),
                 faces,
                 uv,
                 colors: self.mesh.colors.clone(),
@@ -283,34 +270,35 @@ impl Job {
                 vertex_parents: t.vertices(),
                 source: Vec::new(),
                 kinds: Vec::new(),
-                split: self.split,
+                split: Split::Quad,
                 mesh: self.mesh,
             };
         }
+        let split = self.steps.last().map_or(Split::Quad, |s| s.split);
         let before = self.geometry.before;
         let (v, f) = (before.vertices as u32, before.faces as u32);
         Refined {
             level,
             counts: self.geometry.counts,
             points: self.geometry.points.unwrap_or_default(),
-            faces: match self.split {
+            faces: match split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
                 Split::Triangle | Split::Sqrt3 { .. } => Faces::Triangles(self.geometry.corners),
                 Split::Dual { .. } => {
                     Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
                 }
             },
-            uv: (self.mesh.uv.is_some() && !self.split.stores()).then(|| UvValues {
+            uv: (self.mesh.uv.is_some() && !self.steps.iter().any(|s| s.split.stores())).then(|| UvValues {
                 values: self.uv.wide.iter().map(|v| [v[0], v[1]]).collect(),
                 corners: self.uv.corners,
             }),
             colors: self.geometry.wide,
-            parent_ranges: (self.split == Split::Quad).then_some([v, v + f]),
+            parent_ranges: (split == Split::Quad).then_some([v, v + f]),
             // Every edge of a stored level is one of its own.
-            vertex_parents: if self.split.stores() { u32::MAX } else { v },
+            vertex_parents: if split.stores() { u32::MAX } else { v },
             source: self.geometry.source,
             kinds: self.geometry.kinds,
-            split: self.split,
+            split,
             mesh: self.mesh,
         }
     }
@@ -320,47 +308,81 @@ impl Job {
 ///
 /// # Errors
 /// [`RefineError`], before anything is allocated.
-pub fn refine(mesh: &Arc<Mesh>, plan: Plan, budget: u64) -> Result<Refined, RefineError> {
-    Ok(Job::new(mesh.clone(), plan, budget)?.finish())
+pub fn refine(mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Refined, RefineError> {
+    Ok(Job::new(mesh.clone(), plan.clone(), budget)?.finish())
 }
 
 /// The slow twin of the fast path: `values` (one for each vertex of `mesh`) refined in f64 through recorded rows. Also
-/// calls `inspect` with every level's half-edges but the last's. Cost: about 200 ns a point.
+/// calls `inspect` with every level's half-edges but the last's. Values of three channels are points: constants of rules
+/// move them. Cost: about 200 ns a point.
 ///
 /// # Errors
 /// [`RefineError`], with no budget.
 pub fn evaluate<const N: usize>(
     mesh: &Mesh,
-    plan: Plan,
+    plan: &Plan,
     values: &[[f64; N]],
     mut inspect: impl FnMut(&Level<'_>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
-    let split = admit(mesh, &plan, u64::MAX)?;
-    let kept = if matches!(split, Split::Sqrt3 { .. }) { plan.kept(mesh) } else { Vec::new() };
+    let steps = admit(mesh, plan, u64::MAX)?;
+    let kept = plan.kept(mesh);
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
-    for step in 0..plan.level {
+    for at in 0..=plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
+        let sharp = sharp_at(&steps, at, mesh, &kept);
+        if let Some(fairing) = plan.fairing(at) {
+            let tags = Tags { sharp, ..Tags::new(plan.rules, Default::default()) };
+            for pass in 0..fairing.passes() {
+                let mut new = old.clone();
+                let mut take = |v: u32, row: &[(Source, f64)], _| new[v as usize] = weigh(row, |s| of(&old, &[], s));
+                let (mut cursor, mut quota) = (Cursor::default(), usize::MAX);
+                fairing::rules(&level, pass, tags, &mut Record::new(&mut take, &mut cursor, &mut quota));
+                old = new;
+            }
+        }
+        let Some(step) = steps.get(at as usize) else { break };
         inspect(&level);
-        let split = split.at(step);
+        let split = step.split;
         let lone = split.lone(&level);
-        let sharp = if kept.is_empty() { &mesh.sharp } else { &kept };
-        let tags = Tags { lone: &lone, ..plan.tags(sharp) };
+        let tags = Tags { lone: &lone, ..plan.tags(step, at, sharp) };
         let mut new = vec![[0.0; N]; split.children(&level) as usize];
-        let mut take = |child: u32, row: &[(Source, f64)]| {
-            new[child as usize] = weigh(row, |s| match s {
-                Source::Vertex(v) => old[v as usize],
-                Source::Child(v) => new[v as usize],
-            });
+        let mut take = |child: u32, row: &[(Source, f64)], offset: [f64; 3]| {
+            let mut sum = weigh(row, |s| of(&old, &new, s));
+            if N == 3 {
+                sum.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
+            }
+            new[child as usize] = sum;
         };
-        plan.scheme.rows((&level, split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
+        step.scheme.rows((&level, split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
         old = new;
-        if step + 1 < plan.level {
-            let mut next = Owned::below(&level, split);
+        let next = steps.get(at as usize + 1);
+        if next.is_some() || plan.closes() {
+            let mut below = Owned::below(&level, split);
             let mut at = 0;
-            while !next.fill(&level, &mut at, &mut { usize::MAX }) {}
-            owned = Some(next);
+            while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
+            owned = Some(below.stored_for(next));
         }
     }
     Ok(old)
+}
+
+fn of<const N: usize>(old: &[[f64; N]], new: &[[f64; N]], source: Source) -> [f64; N] {
+    match source {
+        Source::Vertex(v) => old[v as usize],
+        Source::Child(v) => new[v as usize],
+    }
+}
+
+/// The vertices of `level` that stay, as far as ids tell: the mesh's own; with its corners after a turn of edges, which hides
+/// them; none where vertices have been cut apart.
+pub(crate) fn sharp_at<'a>(steps: &[Step], level: u32, mesh: &'a Mesh, kept: &'a [bool]) -> &'a [bool] {
+    let before = &steps[..(level as usize).min(steps.len())];
+    if before.iter().any(|s| !s.split.keeps_vertices()) {
+        &[]
+    } else if before.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
+        kept
+    } else {
+        &mesh.sharp
+    }
 }

@@ -62,6 +62,13 @@ pub enum Note {
         /// The first.
         first: u32,
     },
+    /// Creases, corners or knots at places where there is no such edge or vertex.
+    LostMarks {
+        /// How many.
+        count: u64,
+        /// The first, by its two positions (twice the same for a corner).
+        first: [u32; 2],
+    },
     /// Edges cut because the surface has one side only.
     OneSided {
         /// How many.
@@ -96,6 +103,15 @@ impl fmt::Display for Note {
                     f,
                     "{count} vertex{} where separate fans of faces meet (first: {first}) split",
                     if *count == 1 { "" } else { " positions" }
+                )
+            }
+            Note::LostMarks { count, first: [a, b] } => {
+                let place = if a == b { format!("vertex {a}") } else { format!("edge {a}-{b}") };
+                write!(
+                    f,
+                    "{count} crease{} or corner{} at no edge or vertex (first: {place}) left out",
+                    s(count),
+                    s(count)
                 )
             }
             Note::OneSided { count, first: [a, b] } => {

@@ -22,6 +22,9 @@ pub trait Row {
     fn child(&mut self, c: u32, weight: f64);
     /// Multiplies everything added so far.
     fn scale(&mut self, factor: f64);
+    /// Moves a point by `offset`, whatever the weights; what is no point (colours, texture coordinates) stays. The last
+    /// thing that a rule says.
+    fn constant(&mut self, offset: [f64; 3]);
 }
 
 /// Takes rows, pass by pass.
@@ -117,6 +120,12 @@ impl Row for Sum<'_> {
     fn scale(&mut self, factor: f64) {
         self.sum = self.sum.map(|x| x * factor as f32);
     }
+    #[inline(always)]
+    fn constant(&mut self, offset: [f64; 3]) {
+        for (sum, x) in self.sum.iter_mut().zip(offset) {
+            *sum += x as f32;
+        }
+    }
 }
 
 impl Sink for Eval<'_> {
@@ -141,8 +150,8 @@ pub enum Source {
     Child(u32),
 }
 
-/// Is given a child and its weights.
-pub type TakeRow<'a> = dyn FnMut(u32, &[(Source, f64)]) + 'a;
+/// Is given a child, its weights, and what its point is moved by.
+pub type TakeRow<'a> = dyn FnMut(u32, &[(Source, f64)], [f64; 3]) + 'a;
 
 /// Hands every row to a closure as it is stated.
 pub struct Record<'a> {
@@ -152,7 +161,7 @@ pub struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    /// Calls `take(child, weights)` for at most `quota` rows from `cursor` on.
+    /// Calls `take(child, weights, offset)` for at most `quota` rows from `cursor` on.
     pub fn new(take: &'a mut TakeRow<'a>, cursor: &'a mut Cursor, quota: &'a mut usize) -> Self {
         Record { take, row: Entries::default(), slice: Slice { cursor, quota, seen: 0 } }
     }
@@ -165,27 +174,38 @@ impl<'a> Record<'a> {
 
 /// The weights of one row, written down.
 #[derive(Clone, Debug, Default)]
-pub struct Entries(Vec<(Source, f64)>);
+pub struct Entries {
+    weights: Vec<(Source, f64)>,
+    offset: [f64; 3],
+}
 
 impl Entries {
     #[inline(never)]
     fn push(&mut self, source: Source, weight: f64) {
-        self.0.push((source, weight));
+        self.weights.push((source, weight));
+    }
+
+    fn clear(&mut self) {
+        self.weights.clear();
+        self.offset = [0.0; 3];
     }
 }
 
 impl Row for Entries {
     fn vertex(&mut self, v: u32, weight: f64) {
-        self.0.push((Source::Vertex(v), weight));
+        self.weights.push((Source::Vertex(v), weight));
     }
     fn pair(&mut self, a: u32, b: u32, weight: f64) {
-        self.0.extend([(Source::Vertex(a), weight), (Source::Vertex(b), weight)]);
+        self.weights.extend([(Source::Vertex(a), weight), (Source::Vertex(b), weight)]);
     }
     fn child(&mut self, c: u32, weight: f64) {
-        self.0.push((Source::Child(c), weight));
+        self.weights.push((Source::Child(c), weight));
     }
     fn scale(&mut self, factor: f64) {
-        self.0.iter_mut().for_each(|(_, w)| *w *= factor);
+        self.weights.iter_mut().for_each(|(_, w)| *w *= factor);
+    }
+    fn constant(&mut self, offset: [f64; 3]) {
+        self.offset = offset;
     }
 }
 
@@ -239,6 +259,13 @@ impl Row for EitherRow<'_> {
             EitherRow::Entries(entries) => entries.scale(factor),
         }
     }
+    #[inline(always)]
+    fn constant(&mut self, offset: [f64; 3]) {
+        match self {
+            EitherRow::Sum(sum) => sum.constant(offset),
+            EitherRow::Entries(entries) => entries.constant(offset),
+        }
+    }
 }
 
 impl Sink for Either<'_, '_> {
@@ -262,9 +289,9 @@ impl Sink for Either<'_, '_> {
             match self {
                 Either::Eval(eval) => eval.new[(first + i) as usize] = sum,
                 Either::Record(record) => {
-                    (record.take)(first + i, &entries.0);
+                    (record.take)(first + i, &entries.weights, entries.offset);
                     record.row = entries;
-                    record.row.0.clear();
+                    record.row.clear();
                 }
             }
         }
@@ -275,9 +302,9 @@ impl Sink for Record<'_> {
     type Row<'r> = Entries;
     fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Entries)) {
         for i in self.slice.take(count) {
-            self.row.0.clear();
+            self.row.clear();
             rule(i, &mut self.row);
-            (self.take)(first + i, &self.row.0);
+            (self.take)(first + i, &self.row.weights, self.row.offset);
         }
     }
 }

@@ -34,6 +34,28 @@ pub struct Soup {
     pub face_groups: Vec<u32>,
     /// The material of each face, or [`NONE`]; empty if no face has one.
     pub face_materials: Vec<u32>,
+    /// What schemes have to know beside the shape.
+    pub marks: Marks,
+}
+
+/// Creases, corners, holes and knots, by positions and faces of the soup. Of several for one place the last counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Marks {
+    /// Edges by their ends, with their sharpness: 0 is smooth, 10 and more infinitely sharp.
+    pub creases: Vec<([u32; 2], f32)>,
+    /// Vertices with their sharpness.
+    pub corners: Vec<(u32, f32)>,
+    /// Faces that are refined and not shown.
+    pub holes: Vec<u32>,
+    /// Knot intervals at the first vertex toward the second, greater than or equal to 0; 1 where there is none.
+    pub knots: Vec<([u32; 2], f32)>,
+}
+
+impl Marks {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.creases.is_empty() && self.corners.is_empty() && self.holes.is_empty() && self.knots.is_empty()
+    }
 }
 
 impl Soup {
@@ -53,6 +75,7 @@ impl Soup {
             parts: self.parts.clone(),
             uvs: self.uvs.clone(),
             colors: self.colors.clone(),
+            marks: Marks { holes: Vec::new(), ..self.marks.clone() },
             ..Self::default()
         }
     }

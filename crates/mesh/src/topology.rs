@@ -89,7 +89,7 @@ pub trait Connectivity {
 
     /// Counts of this level. Cost: linear.
     fn counts(&self) -> Counts {
-        let mut rim = [0; 3];
+        let mut rim = [0; 4];
         for r in 0..self.boundary_half_edges() {
             let mut faces = 0;
             self.turn(self.origin(self.boundary_half_edge(r)), |_| faces += 1);
@@ -126,8 +126,9 @@ pub struct Counts {
     pub corners: u64,
     /// Half-edges on a boundary.
     pub boundary: u64,
-    /// Boundary vertices of one face, of two, and of more. What dual splits make of a rim depends on them.
-    pub rim: [u64; 3],
+    /// Boundary vertices of one face, of two, of three, and of more; what dual splits make of a rim depends on them. Those of
+    /// three and more may all be counted at three.
+    pub rim: [u64; 4],
     /// Inner vertices of two faces.
     pub digons: u64,
 }
@@ -161,6 +162,22 @@ impl Topology {
     /// The origin of every half-edge: the corners of the faces.
     pub fn origins(&self) -> &[u32] {
         &self.origin
+    }
+
+    /// The same half-edges, stored in full. Cost: linear, about 40 bytes a half-edge.
+    pub fn of(c: &impl Connectivity) -> Topology {
+        let half_edges = 0..c.half_edges();
+        let starts = (0..c.faces()).map(|f| c.face_half_edges(f).start);
+        Topology {
+            offsets: starts.chain([c.half_edges()]).collect(),
+            twin: half_edges.clone().map(|h| c.twin(h)).collect(),
+            origin: half_edges.clone().map(|h| c.origin(h)).collect(),
+            edge: half_edges.clone().map(|h| c.edge(h)).collect(),
+            face: half_edges.map(|h| c.face(h)).collect(),
+            vertex_half_edge: (0..c.vertices()).map(|v| c.vertex_half_edge(v)).collect(),
+            edge_half_edge: (0..c.edges()).map(|e| c.edge_half_edge(e)).collect(),
+            boundary: (0..c.boundary_half_edges()).map(|r| c.boundary_half_edge(r)).collect(),
+        }
     }
 
     /// The number of corners that all faces have, if they agree.

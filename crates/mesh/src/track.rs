@@ -1,17 +1,20 @@
 //! One array of half-edges on its way through the levels: the mesh's, or its texture coordinates'.
 //!
 //! ```text
-//!   Points ─> Wide ─> HalfEdges ─┐         at every level but the last
-//!     ^──────────────────────────┘
-//!   Points ─> Wide ─> Corners ─> Done      at the last, which is only shown
+//!   Fair ─> Points ─> Wide ─> HalfEdges ─┐                     at every level but the last
+//!     ^──────────────────────────────────┘
+//!   Fair ─> Points ─> Wide ─> Corners ─> Done                  at the last, which is only shown,
+//!                                └────> HalfEdges ─> Fair      unless something is to be done with it
 //! ```
 //!
 //! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once.
 
+use crate::fairing;
 use crate::mesh::Mesh;
-use crate::refine::Plan;
-use crate::scheme::{Boundary, Tags};
-use crate::sink::{Cursor, Source};
+use crate::plan::{Plan, Step};
+use crate::refine::sharp_at;
+use crate::scheme::{Boundary, Rules, Tags};
+use crate::sink::{Cursor, Either, Eval, Source};
 use crate::split::{FaceKind, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
 
@@ -39,6 +42,16 @@ impl Owned {
             Owned::Quads(q) => Level::Quads(q),
             Owned::Triangles(t) => Level::Triangles(t),
             Owned::Stored(t) => Level::Base(t),
+        }
+    }
+
+    /// The same level as the next step wants it held.
+    pub(crate) fn stored_for(self, next: Option<&Step>) -> Owned {
+        match self {
+            Owned::Stored(t) => Owned::Stored(t),
+            Owned::Quads(q) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&q)),
+            Owned::Triangles(t) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&t)),
+            implicit => implicit,
         }
     }
 
@@ -95,10 +108,13 @@ pub(crate) struct Track {
     corner: Vec<bool>,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
+    /// Whether faces list what they came from, because arithmetic does not tell.
+    listed: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
+    Fair(u32, Cursor),
     Points(Cursor),
     Wide(Cursor),
     HalfEdges(u32),
@@ -107,13 +123,14 @@ pub(crate) enum Stage {
 }
 
 impl Track {
-    pub(crate) fn new(mesh: &Mesh, uv: bool, plan: &Plan, split: Split) -> Track {
+    pub(crate) fn new(mesh: &Mesh, uv: bool, plan: &Plan, steps: &[Step]) -> Track {
         let wide = match (&mesh.uv, uv) {
             (Some(channel), true) => channel.values.iter().map(|v| [v[0], v[1], 0.0, 0.0]).collect(),
             (None, true) => Vec::new(),
             (_, false) => mesh.colors.clone(),
         };
-        let idle = plan.level == 0 || (uv && (mesh.uv.is_none() || split.stores()));
+        let stores = steps.iter().any(|s| s.split.stores());
+        let idle = if uv { plan.level == 0 || mesh.uv.is_none() || stores } else { plan.level == 0 && !plan.closes() };
         let mut track = Track {
             uv,
             level: 0,
@@ -134,19 +151,29 @@ impl Track {
             },
             before: Counts::default(),
             corner: Vec::new(),
-            lone: split.lone(&mesh.topology),
+            lone: Vec::new(),
+            listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if !idle {
-            track.stage = track.first_stage();
+            track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
-        if let (Split::Sqrt3 { .. }, false) = (split, uv) {
+        if !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
             track.corner = plan.kept(mesh);
         }
         track
     }
 
-    fn first_stage(&self) -> Stage {
-        if self.uv { Stage::Wide(Cursor::default()) } else { Stage::Points(Cursor::default()) }
+    /// Begins with a level.
+    fn begin(&mut self, level: &Level<'_>, plan: &Plan, steps: &[Step]) {
+        let step = steps.get(self.level as usize);
+        self.lone = step.map_or_else(Vec::new, |s| s.split.lone(level));
+        self.stage = match step {
+            Some(_) if self.uv => Stage::Wide(Cursor::default()),
+            _ if self.uv => Stage::Done,
+            _ if plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
+            Some(_) => Stage::Points(Cursor::default()),
+            None => Stage::Done,
+        };
     }
 
     fn base<'m>(&self, mesh: &'m Mesh) -> &'m Topology {
@@ -157,92 +184,148 @@ impl Track {
     }
 
     /// Works off up to `quota` rows.
-    pub(crate) fn step(&mut self, mesh: &Mesh, plan: &Plan, split: Split, quota: &mut usize) {
+    pub(crate) fn step(&mut self, mesh: &Mesh, plan: &Plan, steps: &[Step], quota: &mut usize) {
         let base = self.base(mesh);
         while *quota > 0 && self.stage != Stage::Done {
-            let level = self.half_edges.as_ref().map_or(Level::Base(base), Owned::view);
-            let tags = if self.uv {
-                Tags { boundary: Boundary::EdgeAndCorner, ..plan.tags(&[]) }
-            } else {
-                let sharp = if self.corner.is_empty() { &mesh.sharp } else { &self.corner };
-                Tags { lone: &self.lone, ..plan.tags(sharp) }
-            };
-            let split = split.at(self.level);
-            let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
-            match &mut self.stage {
-                Stage::Points(cursor) => {
-                    zeroed(&mut self.new_points, children);
-                    let old = self.points.as_deref().unwrap_or(&mesh.positions);
-                    if plan.scheme.eval((&level, split, tags), old, &mut self.new_points, cursor, quota) {
-                        self.stage = Stage::Wide(Cursor::default());
+            let held = self.half_edges.take();
+            let level = held.as_ref().map_or(Level::Base(base), Owned::view);
+            let next = self.work(&level, mesh, plan, steps, quota);
+            match next {
+                Some(next) => {
+                    self.half_edges = next;
+                    let level = self.half_edges.take();
+                    self.begin(&level.as_ref().map_or(Level::Base(base), Owned::view), plan, steps);
+                    self.half_edges = level;
+                    if steps[self.level as usize - 1].split.stores() {
+                        return; // A whole level is enough for one slice.
                     }
                 }
-                Stage::Wide(_) if self.wide.is_empty() => self.stage = self.after_values(plan),
-                Stage::Wide(cursor) => {
+                None => self.half_edges = held,
+            }
+        }
+        if self.stage == Stage::Done {
+            self.half_edges = None;
+        }
+    }
+
+    /// Works on a level; gives the half-edges of the next when it has come to that.
+    fn work(
+        &mut self,
+        level: &Level<'_>,
+        mesh: &Mesh,
+        plan: &Plan,
+        steps: &[Step],
+        quota: &mut usize,
+    ) -> Option<Option<Owned>> {
+        let sharp = if self.uv { &[][..] } else { sharp_at(steps, self.level, mesh, &self.corner) };
+        if let Stage::Fair(pass, cursor) = &mut self.stage {
+            let old = self.points.get_or_insert_with(|| mesh.positions.clone());
+            zeroed(&mut self.new_points, old.len());
+            let tags = Tags { sharp, ..Tags::new(plan.rules, Default::default()) };
+            let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
+            fairing::rules(level, *pass, tags, &mut Either::Eval(&mut sink));
+            if sink.done() {
+                std::mem::swap(old, &mut self.new_points);
+                (*pass, *cursor) = (*pass + 1, Cursor::default());
+                if *pass == plan.fairing(self.level).map_or(0, |f| f.passes()) {
+                    let over = self.level as usize == steps.len();
+                    self.stage = if over { Stage::Done } else { Stage::Points(Cursor::default()) };
+                }
+            }
+            return None;
+        }
+        let at = steps.get(self.level as usize)?;
+        let (split, following) = (at.split, steps.get(self.level as usize + 1));
+        let tags = plan.tags(at, self.level, sharp);
+        let tags = if self.uv {
+            Tags { rules: Rules { boundary: Boundary::EdgeAndCorner, ..tags.rules }, ..tags }
+        } else {
+            Tags { lone: &self.lone, ..tags }
+        };
+        let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
+        let last = following.is_none();
+        let closes = last && !self.uv && plan.closes();
+        match &mut self.stage {
+            Stage::Points(cursor) => {
+                zeroed(&mut self.new_points, children);
+                let old = self.points.as_deref().unwrap_or(&mesh.positions);
+                if at.scheme.eval((level, split, tags), old, &mut self.new_points, cursor, quota) {
+                    self.stage = Stage::Wide(Cursor::default());
+                }
+            }
+            Stage::Wide(cursor) => {
+                let mut done = self.wide.is_empty();
+                if !done {
                     zeroed(&mut self.new_wide, children);
                     let (old, new) = (&self.wide, &mut self.new_wide);
-                    let mut take = |child: u32, row: &[(Source, f64)]| {
+                    let mut take = |child: u32, row: &[(Source, f64)], _| {
                         let sum = weigh(row, |s| match s {
                             Source::Vertex(v) => old[v as usize].map(f64::from),
                             Source::Child(v) => new[v as usize].map(f64::from),
                         });
                         new[child as usize] = sum.map(|x| x as f32);
                     };
-                    if plan.scheme.rows((&level, split, tags), &mut take, cursor, quota) {
-                        self.stage = self.after_values(plan);
-                    }
+                    done = at.scheme.rows((level, split, tags), &mut take, cursor, quota);
                 }
-                Stage::HalfEdges(_) if split.stores() => {
-                    let Level::Base(t) = level else { unreachable!("stored levels come of stored levels") };
-                    let cut = split.cut(t);
-                    let stored = cut.connect(t, split, children as u32);
-                    self.source = descend(&self.source, cut.source);
-                    self.lone = split.lone(&stored);
-                    self.half_edges = Some(Owned::Stored(stored));
-                    self.advance(split);
-                    self.stage = self.first_stage();
-                    return; // A whole level is enough for one slice.
+                if done {
+                    self.stage = if last { Stage::Corners(0) } else { Stage::HalfEdges(0) };
                 }
-                Stage::HalfEdges(at) => {
-                    let next = self.next.get_or_insert_with(|| Owned::below(&level, split));
-                    if next.fill(&level, at, quota) {
-                        self.half_edges = self.next.take();
-                        self.advance(split);
-                        self.stage = self.first_stage();
-                    }
-                }
-                Stage::Corners(_) if split.stores() => {
-                    let Level::Base(t) = level else { unreachable!("stored levels come of stored levels") };
-                    let cut = split.cut(t);
-                    self.source = descend(&self.source, cut.source);
-                    (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
-                    self.stage = Stage::Done;
-                    self.advance(split);
-                    self.half_edges = None;
-                }
-                Stage::Corners(at) => {
-                    on!(&level, c => {
-                        zeroed(&mut self.corners, 4 * c.half_edges() as usize);
-                        let end = at.saturating_add((*quota).min(1 << 30) as u32).min(c.faces());
-                        split.corners(*c, *at, end, &mut self.corners);
-                        *quota -= (end - *at) as usize;
-                        *at = end;
-                        if end == c.faces() {
-                            self.stage = Stage::Done;
-                        }
-                    });
-                    if self.stage == Stage::Done {
-                        self.advance(split);
-                        self.half_edges = None;
-                    }
-                }
-                Stage::Done => {}
             }
+            Stage::Corners(_) if split.stores() => {
+                let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
+                let cut = split.cut(t);
+                let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32)));
+                self.source = descend(&self.source, cut.source);
+                (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
+                self.advance(split);
+                return Some(half_edges);
+            }
+            Stage::Corners(at) => {
+                on!(level, c => {
+                    zeroed(&mut self.corners, 4 * c.half_edges() as usize);
+                    let end = at.saturating_add((*quota).min(1 << 30) as u32).min(c.faces());
+                    split.corners(*c, *at, end, &mut self.corners);
+                    *quota -= (end - *at) as usize;
+                    *at = end;
+                    if end == c.faces() {
+                        self.stage = Stage::HalfEdges(0);
+                    }
+                });
+                if self.stage == Stage::HalfEdges(0) && !closes {
+                    self.list(level, split);
+                    self.advance(split);
+                    return Some(None);
+                }
+            }
+            Stage::HalfEdges(_) if split.stores() => {
+                let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
+                let cut = split.cut(t);
+                let stored = cut.connect(t, split, children as u32);
+                self.source = descend(&self.source, cut.source);
+                self.advance(split);
+                return Some(Some(Owned::Stored(stored)));
+            }
+            Stage::HalfEdges(at) => {
+                let next = self.next.get_or_insert_with(|| Owned::below(level, split));
+                if next.fill(level, at, quota) {
+                    let next = self.next.take().map(|n| n.stored_for(following));
+                    self.list(level, split);
+                    self.advance(split);
+                    return Some(next);
+                }
+            }
+            Stage::Fair(..) | Stage::Done => {}
         }
+        None
     }
 
-    fn after_values(&self, plan: &Plan) -> Stage {
-        if self.level + 1 == plan.level { Stage::Corners(0) } else { Stage::HalfEdges(0) }
+    /// Lists what the faces of the next level came from, if that is wanted, of a split that does not say so itself.
+    fn list(&mut self, level: &Level<'_>, split: Split) {
+        if self.listed && !self.uv {
+            let mut parents = Vec::new();
+            split.parents(level, &mut parents);
+            self.source = descend(&self.source, parents);
+        }
     }
 
     fn advance(&mut self, split: Split) {

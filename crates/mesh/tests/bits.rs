@@ -23,7 +23,7 @@ fn hashes_of_refined_models() {
                 // Schemes on triangles get the triangulated model, as they do on the page.
                 let refined = [&soup, &triangles].into_iter().find_map(|soup| {
                     let (mesh, _) = Mesh::build(soup, Weld::Off).ok()?;
-                    refine(&Arc::new(mesh), plan, u64::MAX).ok()
+                    refine(&Arc::new(mesh), &plan, u64::MAX).ok()
                 });
                 let refined =
                     refined.unwrap_or_else(|| panic!("{} does not refine under {}", shape.name, entry.info.id));

@@ -168,10 +168,10 @@ proptest! {
                 mesh.stats();
                 let mesh = std::sync::Arc::new(mesh);
                 let boundaries = [limn_mesh::Boundary::EdgeOnly, limn_mesh::Boundary::EdgeAndCorner];
-                let takes = |s: &&'static limn_mesh::Entry| s.info.split(mesh.is_triangles(), boundaries[0]).is_some();
+                let takes = |s: &&'static limn_mesh::Entry| s.info.split(mesh.face_shape(), boundaries[0], &[0.0; 3]).is_some();
                 for (scheme, boundary) in SCHEMES.iter().filter(takes).flat_map(|s| boundaries.map(|b| (s, b))) {
                     let plan = limn_mesh::Plan::new(scheme, boundary, 2);
-                    let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
+                    let refined = limn_mesh::refine(&mesh, &plan, u64::MAX).unwrap();
                     prop_assert_eq!(refined.points.len() as u64, refined.counts.vertices, "{}", scheme.info.id);
                     prop_assert_eq!(refined.faces.count() as u64, refined.counts.faces, "{}", scheme.info.id);
                     if scheme.info.group == "dual" {
@@ -186,4 +186,46 @@ proptest! {
             }
         }
     }
+}
+
+/// Marks name positions and faces of the soup; the mesh has them by its own edges, vertices, faces and half-edges.
+#[test]
+fn marks_find_their_places() {
+    // Two quads side by side and a stray position in front.
+    let mut points = vec![[9.0, 9.0, 9.0]];
+    points.extend((0..6).map(|i| [(i / 2) as f32, (i % 2) as f32, 0.0]));
+    let mut soup = Soup::from_faces(points, &[[1u32, 3, 4, 2], [3, 5, 6, 4]]);
+    soup.marks.creases = vec![([3, 4], 2.5), ([1, 2], 1.0), ([2, 1], 10.0), ([1, 4], 3.0)];
+    soup.marks.corners = vec![(5, 4.0), (0, 1.0)];
+    soup.marks.holes = vec![1];
+    soup.marks.knots = vec![([3, 4], 2.0), ([5, 6], 0.5), ([6, 5], 0.25)];
+    let (mesh, report) = Mesh::build(&soup, Weld::Off).unwrap();
+    let t = &mesh.topology;
+    let half_edge = |a: u32, b: u32| {
+        let at = |h: u32| mesh.vertex_source[t.origin(h) as usize];
+        (0..t.half_edges()).find(|&h| at(h) == a && at(t.next(h)) == b).unwrap()
+    };
+    for (a, b, sharpness) in [(3, 4, 2.5), (4, 3, 2.5), (2, 1, 10.0), (1, 3, 0.0)] {
+        assert_eq!(mesh.edge_sharpness[t.edge(half_edge(a, b)) as usize], sharpness, "{a}-{b}");
+    }
+    let corner: Vec<u32> = (0..6).filter(|&v| mesh.vertex_sharpness[v as usize] > 0.0).collect();
+    assert_eq!(corner.iter().map(|&v| mesh.vertex_source[v as usize]).collect::<Vec<_>>(), [5]);
+    assert_eq!(mesh.holes, [false, true]);
+    let knots = |a, b| {
+        let h = half_edge(a, b) as usize;
+        [mesh.knots[2 * h], mesh.knots[2 * h + 1]]
+    };
+    assert_eq!((knots(3, 4), knots(4, 3)), ([2.0, 1.0], [1.0, 2.0]));
+    assert_eq!((knots(5, 6), knots(1, 3)), ([0.5, 0.25], [1.0, 1.0]));
+    let notes: Vec<_> = report.notes.iter().map(ToString::to_string).collect();
+    assert!(
+        notes.contains(&"2 creases or corners at no edge or vertex (first: edge 1-4) left out".to_owned()),
+        "{notes:?}"
+    );
+    // Copies of a vertex on a cut edge share its marks.
+    let mut book = book(4);
+    book.marks.creases = vec![([4, 5], 3.0), ([4, 8], 2.0)];
+    let mesh = common::build(&book);
+    let sharp = |s: f32| mesh.edge_sharpness.iter().filter(|&&x| x == s).count();
+    assert_eq!((sharp(3.0), sharp(2.0)), (1, 3), "one edge of a page, and the spine on each of three pages");
 }

@@ -310,7 +310,7 @@ fn baumgartners_table() {
         }
         let mesh = build(&soup);
         let plan = |level| Plan::new(scheme(id).unwrap(), Boundary::default(), level);
-        (0..=4).map(|level| limn_mesh::refine(&mesh, plan(level), u64::MAX).unwrap().faces.count()).collect()
+        (0..=4).map(|level| limn_mesh::refine(&mesh, &plan(level), u64::MAX).unwrap().faces.count()).collect()
     };
     for id in ["loop", "linear"] {
         assert_eq!(counts("pyramid", id, false), [6, 24, 96, 384, 1536]);

@@ -195,7 +195,7 @@ fn doo_sabin_makes_the_faces_that_reports_count() {
     let counts = |name: &str, level: u32| {
         let mesh = build(&(limn_mesh::shape(name).unwrap().build)());
         let plan = limn_mesh::Plan::new(limn_mesh::scheme("doo-sabin").unwrap(), Boundary::default(), level);
-        let refined = limn_mesh::refine(&mesh, plan, u64::MAX).unwrap();
+        let refined = limn_mesh::refine(&mesh, &plan, u64::MAX).unwrap();
         let kinds = [limn_mesh::FaceKind::Face, limn_mesh::FaceKind::Edge, limn_mesh::FaceKind::Vertex];
         (refined.faces.count(), kinds.map(|k| refined.kinds.iter().filter(|x| **x == k).count()))
     };

@@ -35,11 +35,11 @@ fn check(json: &str) {
         let plan = Plan::new(scheme(id).unwrap(), boundary, level);
         // Every library was given the positions rounded to f32.
         let rounded: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
-        let exact = evaluate(&mesh, plan, &rounded, |_| ()).unwrap();
+        let exact = evaluate(&mesh, &plan, &rounded, |_| ()).unwrap();
         let theirs = triples(&theirs["positions"]);
         let d = distance(&exact, &theirs);
         assert!(d < 1e-9, "{}: level {level} is off by {d} in f64", oracle["source"]);
-        let fast = refine(&mesh, plan, u64::MAX).unwrap();
+        let fast = refine(&mesh, &plan, u64::MAX).unwrap();
         let fast: Vec<_> = fast.points.iter().map(|p| p.map(f64::from)).collect();
         let d = distance(&fast, &theirs);
         assert!(d < 1e-6, "{}: level {level} is off by {d} in f32", oracle["source"]);

@@ -163,15 +163,15 @@ impl Engine {
             Shown { count, level: made.plan.level, scheme: made.plan.scheme.info.id }
         });
         let stem = document.model().map_or("model", |m| m.name.as_str());
-        let stem = plan.filter(|p| p.level > 0).map_or(stem.to_owned(), |p| format!("{stem}-{}", p.level));
+        let stem = plan.as_ref().filter(|p| p.level > 0).map_or(stem.to_owned(), |p| format!("{stem}-{}", p.level));
         let file = |ending: &str| format!("export {}", limn_document::words::quote(&format!("{stem}.{ending}")));
         let (undo, redo) = document.undo_steps();
         let lines = document.commands().into_iter().filter(Engine::is_open).map(|c| c.to_string());
         State {
             model,
-            scheme: plan.map_or("", |p| p.scheme.info.id),
+            scheme: plan.as_ref().map_or("", |p| p.scheme.info.id),
             params: controls::parameters(document),
-            level: plan.map_or(0, |p| p.level),
+            level: plan.as_ref().map_or(0, |p| p.level),
             levels: report::ruler(document),
             shown,
             times: self.times,

@@ -30,7 +30,7 @@ impl Engine {
         let Some(known) = &self.known else { return };
         let faces = self.document.predict(plan.level).map_or(0, |p| p.counts.faces);
         let corners = self.document.view().shading == Shading::Flat && faces <= MOST_FLAT;
-        let shown = self.shown.as_ref().filter(|m| m.is(&mesh, plan, corners));
+        let shown = self.shown.as_ref().filter(|m| m.is(&mesh, &plan, corners));
         if shown.is_some() {
             self.making = None;
             self.progress_over();
@@ -39,11 +39,11 @@ impl Engine {
         }
         // A parameter's slider asks again before it can be answered. What it asked for first is made and shown, then the
         // last: else nothing would be seen until the hand rests.
-        if self.making.as_ref().is_some_and(|m| m.is_but_for_params(&mesh, plan, corners)) {
+        if self.making.as_ref().is_some_and(|m| m.is_but_for_params(&mesh, &plan, corners)) {
             return;
         }
         let making = match &self.shown {
-            Some(made) if made.is(&mesh, plan, !corners) => Ok(Making::again(made, corners)),
+            Some(made) if made.is(&mesh, &plan, !corners) => Ok(Making::again(made, corners)),
             _ => Making::refine(mesh, plan, corners, known.parts.clone(), self.document.budget()),
         };
         match making {
@@ -79,7 +79,7 @@ impl Engine {
                     self.paint();
                     self.dirty.picture = true;
                     self.dirty.state = true;
-                    if self.document.plan() != self.shown.as_ref().map(|m| m.plan) {
+                    if self.document.plan() != self.shown.as_ref().map(|m| m.plan.clone()) {
                         return self.sync();
                     }
                     self.overlays();
@@ -139,7 +139,7 @@ impl Engine {
             let _ = self.document.run("redo");
             *self.document.view_mut() = view;
         }
-        let rule = match shown.plan.boundary {
+        let rule = match shown.plan.rules.boundary {
             limn_mesh::Boundary::EdgeOnly => "edge-only",
             limn_mesh::Boundary::EdgeAndCorner => "edge-and-corner",
         };

@@ -35,7 +35,7 @@ use self::{
     document::{Document, bad, extension, list, shown},
 };
 use crate::{
-    Files, Limits, Model, ReadError, Tags, Warning,
+    Files, Limits, Model, ReadError, Warning,
     error::{WarningKind, Warnings, short},
     model::model_name,
 };

@@ -472,7 +472,6 @@ impl<'s> Builder<'s> {
             images: self.materials.pictures,
             triangulated: self.triangulated,
             weld: Weld::Exact,
-            tags: Tags::default(),
         };
         Ok((model, self.warnings.finish()))
     }

@@ -98,7 +98,7 @@ fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, weight:
                 }
             }
             // Rounded, this is the image before the corner.
-            (true, true) if tags.boundary == Boundary::EdgeAndCorner => row.vertex(c.origin(h), 1.0),
+            (true, true) if tags.rules.boundary == Boundary::EdgeAndCorner => row.vertex(c.origin(h), 1.0),
             (after, _) => on_curve(row, c.origin(h), c.origin(if after && !before { c.next(h) } else { c.prev(h) })),
         }
     });

@@ -32,7 +32,7 @@ pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use sqrt3::Sqrt3;
 
 use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
-use crate::split::{Level, Split};
+use crate::split::{FaceShape, Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
 /// Every scheme, in the order of the menu.
@@ -99,9 +99,9 @@ pub enum Family {
 }
 
 impl Info {
-    /// The split that this scheme uses on a mesh whose faces are `triangles` (all) or not; none if it cannot take it.
-    pub fn split(&self, triangles: bool, boundary: Boundary) -> Option<Split> {
-        match (self.accepts, triangles) {
+    /// The split that this scheme uses on a mesh with such faces; none if it cannot take them.
+    pub fn split(&self, shape: FaceShape, boundary: Boundary, _params: &[f64; MOST_PARAMS]) -> Option<Split> {
+        match (self.accepts, shape == FaceShape::Triangles) {
             (Accepts::Triangles, false) => None,
             _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
             _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
@@ -121,11 +121,64 @@ pub enum Boundary {
     EdgeAndCorner,
 }
 
+/// How semi-sharp creases soften from level to level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Decay {
+    /// By one.
+    #[default]
+    Uniform,
+    /// By Chaikin's rule along the crease, then by one.
+    Chaikin,
+}
+
+/// What Catmull-Clark makes of triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TriangleRule {
+    /// The same as of other polygons.
+    #[default]
+    CatmullClark,
+    /// Weights that make them smoother.
+    Smooth,
+}
+
+/// Which parts of a seam texture coordinates keep linear, as OpenSubdiv has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FaceVarying {
+    /// None: smooth everywhere.
+    None,
+    /// Corners.
+    CornersOnly,
+    /// Corners, and where three or more regions meet.
+    #[default]
+    CornersPlus1,
+    /// Those, and darts and concave corners.
+    CornersPlus2,
+    /// All boundaries of regions.
+    Boundaries,
+    /// Everything is linear.
+    All,
+}
+
+/// What holds for every scheme of a plan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rules {
+    /// What happens at the rim of an open mesh.
+    pub boundary: Boundary,
+    /// How creases soften.
+    pub decay: Decay,
+    /// What Catmull-Clark makes of triangles.
+    pub triangle: TriangleRule,
+    /// What seams do to texture coordinates.
+    pub face_varying: FaceVarying,
+}
+
 /// What rules have to know beside the connectivity.
 #[derive(Clone, Copy, Debug)]
 pub struct Tags<'a> {
-    /// The boundary rule.
-    pub boundary: Boundary,
+    /// The rules of the plan.
+    pub rules: Rules,
+    /// The level that is refined.
+    pub step: u32,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
     /// Corners with two images, of the dual split, by their half-edges: children from `half_edges()` on.
@@ -135,13 +188,18 @@ pub struct Tags<'a> {
 }
 
 impl Tags<'_> {
+    /// Tags of a mesh without marks, at level 0.
+    pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
+        Tags { rules, step: 0, sharp: &[], lone: &[], params }
+    }
+
     /// Whether `v`, which starts its turn at `start`, is kept.
     #[inline(always)]
     pub(crate) fn is_sharp<C: Connectivity>(&self, c: &C, v: u32) -> bool {
         if (v as usize) < self.sharp.len() && self.sharp[v as usize] {
             return true;
         }
-        if self.boundary == Boundary::EdgeOnly {
+        if self.rules.boundary == Boundary::EdgeOnly {
             return false;
         }
         let start = c.vertex_half_edge(v);

@@ -47,8 +47,28 @@ pub enum Split {
     },
 }
 
+/// What the faces of a level look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceShape {
+    /// All have three corners.
+    Triangles,
+    /// All have four corners.
+    Quads,
+    /// Neither.
+    Polygons,
+}
+
 impl Split {
-    /// The split of step `step`, counted from 0.
+    /// What the faces look like after this split of faces that look like `_before`.
+    pub fn face_shape(self, _before: FaceShape) -> FaceShape {
+        match self {
+            Split::Quad => FaceShape::Quads,
+            Split::Triangle | Split::Sqrt3 { .. } => FaceShape::Triangles,
+            Split::Dual { .. } => FaceShape::Polygons,
+        }
+    }
+
+    /// The split of a run's step `step`, counted from 0.
     pub fn at(self, step: u32) -> Split {
         match self {
             Split::Sqrt3 { .. } => Split::Sqrt3 { trisect: step % 2 == 1 },
@@ -61,6 +81,11 @@ impl Split {
         matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. })
     }
 
+    /// Whether the vertices of a level are the first of the next.
+    pub fn keeps_vertices(self) -> bool {
+        !matches!(self, Split::Dual { .. })
+    }
+
     /// The corners of `c` that have two images, by their half-edges: children from `half_edges()` on. Cost: linear where
     /// there can be any.
     pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
@@ -69,7 +94,7 @@ impl Split {
 
     /// The counts one level further, or none if they do not fit 64 bits.
     pub fn counts(self, c: Counts) -> Option<Counts> {
-        let [one, two, more] = c.rim;
+        let [one, two, three, more] = c.rim;
         let new = match self {
             Split::Quad => Counts {
                 vertices: c.vertices.checked_add(c.edges)?.checked_add(c.faces)?,
@@ -77,7 +102,7 @@ impl Split {
                 faces: c.corners,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
-                rim: [one, two.checked_add(c.boundary)?, more],
+                rim: [one, two.checked_add(c.boundary)?, three, more],
                 ..c
             },
             Split::Triangle => Counts {
@@ -86,7 +111,7 @@ impl Split {
                 faces: c.faces.checked_mul(4)?,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
-                rim: [one, two, more.checked_add(c.boundary)?],
+                rim: [one, two, three.checked_add(c.boundary)?, more],
                 ..c
             },
             Split::Dual { rounded } => {
@@ -108,7 +133,7 @@ impl Split {
                     faces: c.faces.checked_add(inner)?.checked_add(c.vertices)?.checked_sub(bare)?,
                     corners,
                     boundary,
-                    rim: [one.checked_add(extra)?, two.checked_mul(2)?, more.checked_mul(2)?],
+                    rim: [one.checked_add(extra)?, two.checked_mul(2)?, three.checked_add(more)?.checked_mul(2)?, 0],
                     digons: 0,
                 }
             }
@@ -122,13 +147,27 @@ impl Split {
                     faces: c.corners,
                     corners,
                     boundary,
-                    // Not followed any further: no dual split comes after this one.
-                    rim: [0, 0, boundary],
-                    digons: 0,
+                    // A boundary vertex gains a face where edges turn and loses it where they are cut, which comes next:
+                    // only between the two are three and more told apart.
+                    rim: if trisect {
+                        [two, three, more.checked_add(new.checked_mul(2)?)?, 0]
+                    } else {
+                        [0, one, two, three.checked_add(more)?]
+                    },
+                    digons: c.digons,
                 }
             }
         };
         Some(new)
+    }
+
+    /// Appends the faces of `c` behind the faces that the quad or triangle split makes of it.
+    pub(crate) fn parents(self, c: &impl Connectivity, out: &mut Vec<u32>) {
+        let half_edges = 0..c.half_edges();
+        match self {
+            Split::Quad => out.extend(half_edges.map(|h| c.face(h))),
+            _ => out.extend(half_edges.map(|h| h / 3).chain(0..c.faces())),
+        }
     }
 
     /// The child vertex that takes the place of the parent's `v`.

@@ -107,7 +107,7 @@ pub fn compare(
         for (at, value) in words.enumerate() {
             assert!(plan.params.set(&plan.scheme.info, at, value.parse().unwrap()));
         }
-        let ours = evaluate(mesh, plan, &positions, |_| ()).unwrap();
+        let ours = evaluate(mesh, &plan, &positions, |_| ()).unwrap();
         let d = distance(&ours, &naive.points);
         assert!(d < 1e-12, "{what}, {id}, level {level}, {boundary:?}: off by {d}");
     }

@@ -1,0 +1,160 @@
+//! What to refine by: a scheme, or one scheme after the other, with rules for rims and marks, and fairing between.
+//!
+//! ```text
+//!   level   0 ────── 1 ────── 2 ────── 3
+//!   step        0        1        2           step k makes level k + 1 by the run that holds there
+//!   runs    doo-sabin    └ catmull-clark from=1
+//!   fair    at=0     before step 0
+//! ```
+//!
+//! A step's split follows from its scheme and from the shape of the faces that are there ([`crate::FaceShape`]), so a plan can be
+//! walked, predicted and refused without a mesh being touched. Cost: constant a step.
+
+use crate::fairing::Fairing;
+use crate::mesh::Mesh;
+use crate::refine::RefineError;
+use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
+use crate::split::Split;
+use crate::topology::Connectivity;
+
+/// What to refine by, and how far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The scheme of the first step, and of all others up to the first of `later`.
+    pub scheme: &'static Entry,
+    /// Its parameters.
+    pub params: Params,
+    /// Schemes that take over at a later step, by rising `from`, all different and at least 1.
+    pub later: Vec<Run>,
+    /// What holds for all of them.
+    pub rules: Rules,
+    /// Fairing at levels, by rising `at`, all different.
+    pub fairings: Vec<Fairing>,
+    /// Whether the points of the last level are moved to where they go in the limit.
+    pub limit: bool,
+    /// How many times; 0 is the mesh itself.
+    pub level: u32,
+}
+
+/// A scheme from a step on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// The first step that it makes, and the level that it begins with.
+    pub from: u32,
+    /// The scheme.
+    pub scheme: &'static Entry,
+    /// Its parameters.
+    pub params: Params,
+}
+
+/// One step of a plan on a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Step {
+    pub scheme: &'static Entry,
+    pub params: [f64; MOST_PARAMS],
+    pub split: Split,
+    /// Whether the level that it begins with must have its half-edges stored in full.
+    pub stored: bool,
+}
+
+/// How the half-edges of a level are held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Held {
+    Full,
+    Quads,
+    Triangles,
+}
+
+impl Plan {
+    /// A plan of one scheme with its own parameters.
+    pub fn new(scheme: &'static Entry, boundary: Boundary, level: u32) -> Plan {
+        Plan {
+            scheme,
+            params: Params::default(),
+            later: Vec::new(),
+            rules: Rules { boundary, ..Rules::default() },
+            fairings: Vec::new(),
+            limit: false,
+            level,
+        }
+    }
+
+    /// The same to another level.
+    pub fn to(&self, level: u32) -> Plan {
+        Plan { level, ..self.clone() }
+    }
+
+    /// The run that makes step `step`.
+    pub fn run(&self, step: u32) -> Run {
+        let first = Run { from: 0, scheme: self.scheme, params: self.params };
+        self.later.iter().rev().find(|run| run.from <= step).copied().unwrap_or(first)
+    }
+
+    /// The split of the first step on `mesh`.
+    ///
+    /// # Errors
+    /// [`RefineError::NeedsTriangles`].
+    pub fn split(&self, mesh: &Mesh) -> Result<Split, RefineError> {
+        let one = self.to(1);
+        one.walk(mesh).next().map_or(Ok(Split::Quad), |step| step.map(|s| s.split))
+    }
+
+    /// The steps on `mesh`, one after the other, up to the first that cannot be made.
+    pub(crate) fn walk<'p>(&'p self, mesh: &'p Mesh) -> impl Iterator<Item = Result<Step, RefineError>> + 'p {
+        let mut shape = mesh.face_shape();
+        let mut held = Held::Full;
+        (0..self.level).map(move |step| {
+            let run = self.run(step);
+            let info = &run.scheme.info;
+            let params = run.params.of(info);
+            let split = match info.split(shape, self.rules.boundary, &params) {
+                Some(split) => split.at(step - run.from),
+                None if step > 0 => return Err(RefineError::NeedsTrianglesAt { scheme: info.name, level: step }),
+                None => {
+                    let t = &mesh.topology;
+                    let odd = (0..t.faces()).find(|&f| t.face_half_edges(f).len() != 3).unwrap_or(0);
+                    return Err(RefineError::NeedsTriangles {
+                        scheme: info.name,
+                        face: mesh.face_source[odd as usize],
+                        corners: t.face_half_edges(odd).len() as u32,
+                    });
+                }
+            };
+            let stored = split.stores() || (held == Held::Triangles && info.accepts == Accepts::Polygons);
+            shape = split.face_shape(shape);
+            held = match split {
+                Split::Quad => Held::Quads,
+                Split::Triangle => Held::Triangles,
+                _ => Held::Full,
+            };
+            Ok(Step { scheme: run.scheme, params, split, stored })
+        })
+    }
+
+    /// Whether some step leaves texture coordinates out.
+    pub fn drops_uv(&self, mesh: &Mesh) -> bool {
+        self.walk(mesh).any(|step| step.is_ok_and(|s| s.split.stores()))
+    }
+
+    /// What rules have to know of the plan at a step, and of the sharp vertices.
+    pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool]) -> Tags<'a> {
+        Tags { sharp, step: at, ..Tags::new(self.rules, step.params) }
+    }
+
+    /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
+    pub(crate) fn kept(&self, mesh: &Mesh) -> Vec<bool> {
+        let t = &mesh.topology;
+        let tags = Tags { sharp: &mesh.sharp, ..Tags::new(self.rules, [0.0; MOST_PARAMS]) };
+        (0..t.vertices()).map(|v| tags.is_sharp(t, v)).collect()
+    }
+
+    /// The fairing at `level`, if any.
+    pub(crate) fn fairing(&self, level: u32) -> Option<Fairing> {
+        self.fairings.iter().find(|f| f.at == level && f.iterations > 0).copied()
+    }
+
+    /// Whether something is left to be done with the half-edges of the last level.
+    pub(crate) fn closes(&self) -> bool {
+        self.fairing(self.level).is_some()
+    }
+}
