@@ -1,9 +1,9 @@
-//! Doo-Sabin and sqrt3 against the plainest program that can be written from their papers: polygons, maps, f64, no
+//! Doo-Sabin and the sqrt3 schemes against the plainest program that can be written from their papers: polygons, maps, f64, no
 //! half-edges. Numbers of vertices differ, so points are matched by place.
 
 mod common;
 
-use common::polygons::{Point, Polygons, compare, mean, mix, polygons};
+use common::polygons::{Point, Polygons, compare, mean, mix, polygons, turned};
 use common::{build, gallery};
 use limn_mesh::Boundary;
 use std::collections::BTreeMap;
@@ -11,6 +11,8 @@ use std::f64::consts::TAU;
 
 /// A rule for the image of corner `i` of a face.
 type Image = fn(&[Point], usize) -> Point;
+/// A step of the sqrt3 split: whether rims are cut, and their corners.
+type Turning = fn(&Polygons, bool, &[usize]) -> Polygons;
 
 fn doo_sabin(face: &[Point], i: usize) -> Point {
     let n = face.len() as f64;
@@ -87,67 +89,121 @@ fn dual(p: &Polygons, image: Image, boundary: Boundary) -> Polygons {
 fn sqrt3(p: &Polygons, trisect: bool, corners: &[usize]) -> Polygons {
     let a = p.around();
     let is_corner = |v: usize| corners.contains(&v);
-    let mut out = Polygons { points: p.points.clone(), faces: Vec::new() };
-    for v in 0..p.points.len() {
+    let mut old = p.points.clone();
+    for (v, place) in old.iter_mut().enumerate() {
         let (ring, closed) = p.ring(&a, v);
-        out.points[v] = if closed {
+        if closed {
             let n = ring.len() as f64;
             let alpha = (4.0 - 2.0 * (TAU / n).cos()) / 9.0;
-            mix(&[(1.0 - alpha, p.points[v]), (alpha, mean(ring.iter().map(|&w| &p.points[w])))])
+            *place = mix(&[(1.0 - alpha, p.points[v]), (alpha, mean(ring.iter().map(|&w| &p.points[w])))]);
         } else if trisect && !is_corner(v) {
             let w = 4.0 / 27.0;
-            mix(&[(19.0 / 27.0, p.points[v]), (w, p.points[a.rim[v][0]]), (w, p.points[a.rim[v][1]])])
-        } else {
-            p.points[v]
+            *place = mix(&[(19.0 / 27.0, p.points[v]), (w, p.points[a.rim[v][0]]), (w, p.points[a.rim[v][1]])]);
+        }
+    }
+    let third = |v: usize, w: usize| {
+        let beyond = match is_corner(v) {
+            true => mix(&[(2.0, p.points[v]), (-1.0, p.points[w])]),
+            false => p.points[*a.rim[v].iter().find(|&&u| u != w).unwrap()],
         };
-    }
-    // Corners in order from the rim edge on, if there is one and it is cut; else from anywhere.
-    let cut: Vec<Option<[usize; 3]>> = p
-        .faces
-        .iter()
-        .map(|f| {
-            let turn = |i: usize| [f[i], f[(i + 1) % 3], f[(i + 2) % 3]];
-            (0..3).map(turn).find(|t| trisect && a.edges[&(t[0].min(t[1]), t[0].max(t[1]))].len() == 1)
-        })
-        .collect();
-    let mut centres: Vec<Vec<usize>> = Vec::new();
-    for (f, face) in p.faces.iter().enumerate() {
-        let new = out.points.len();
-        match cut[f] {
-            None => {
-                out.points.push(mean(face.iter().map(|&v| &p.points[v])));
-                centres.push(vec![new]);
-            }
-            Some([x, y, _]) => {
-                let beyond = |v: usize, w: usize| match is_corner(v) {
-                    true => mix(&[(2.0, p.points[v]), (-1.0, p.points[w])]),
-                    false => p.points[*a.rim[v].iter().find(|&&u| u != w).unwrap()],
-                };
-                let third = |v: usize, w: usize| {
-                    mix(&[(16.0 / 27.0, p.points[v]), (10.0 / 27.0, p.points[w]), (1.0 / 27.0, beyond(v, w))])
-                };
-                out.points.extend([third(x, y), third(y, x)]);
-                centres.push(vec![new, new + 1]);
-            }
-        }
-    }
-    // What an edge's end (v, w) of face f sees as the face's centre: the rim's points are dealt to the other two edges.
-    let centre = |f: usize, v: usize, w: usize| match cut[f] {
-        Some([_, y, z]) if [v, w].contains(&y) && [v, w].contains(&z) => centres[f][1],
-        _ => centres[f][0],
+        mix(&[(16.0 / 27.0, p.points[v]), (10.0 / 27.0, p.points[w]), (1.0 / 27.0, beyond)])
     };
-    for (f, face) in p.faces.iter().enumerate() {
-        for i in 0..3 {
-            let (v, w) = (face[i], face[(i + 1) % 3]);
-            let sides = &a.edges[&(v.min(w), v.max(w))];
-            match sides.iter().find(|&&g| g != f) {
-                Some(&g) => out.faces.push(vec![v, centre(g, v, w), centre(f, v, w)]),
-                None if trisect => out.faces.push(vec![centres[f][0], centres[f][1], face[(i + 2) % 3]]),
-                None => out.faces.push(vec![v, w, centres[f][0]]),
-            }
+    turned(p, &a, trisect, old, |f| mean(p.faces[f].iter().map(|&v| &p.points[v])), third)
+}
+
+/// Labsik and Greiner 2000: vertices stay, centres by twelve points or by the rings of irregular vertices.
+fn interpolating_sqrt3(p: &Polygons, trisect: bool, corners: &[usize]) -> Polygons {
+    let a = p.around();
+    // The third vertex of the face beside edge (v, w) that is not `f`; beyond a rim none.
+    let across = |f: usize, v: usize, w: usize| -> Option<(usize, usize)> {
+        let g = *a.edges[&(v.min(w), v.max(w))].iter().find(|&&g| g != f)?;
+        Some((g, *p.faces[g].iter().find(|&&u| u != v && u != w).unwrap()))
+    };
+    let valence = |v: usize| Some(a.neighbours[v].len()).filter(|&n| a.rim[v].is_empty() && n != 6);
+    // The rule of an irregular vertex for the face between its neighbours v and w.
+    let ring = |at: usize, v: usize, w: usize| -> Point {
+        let (mut ring, _) = p.ring(&a, at);
+        let n = ring.len();
+        let first = ring.iter().position(|&u| u == v).unwrap();
+        ring.rotate_left(first);
+        if ring[1] == w {
+            ring.reverse();
+            ring.rotate_right(1);
         }
-    }
-    out
+        assert_eq!((ring[0], ring[n - 1]), (v, w));
+        let c = 2.0 / 3.0 * (TAU / (2.0 * n as f64)).cos();
+        let (own, weights): (f64, Vec<f64>) = match n {
+            3 => (8.0 / 9.0, vec![4.0 / 27.0, -5.0 / 27.0, 4.0 / 27.0]),
+            4 => (7.0 / 9.0, vec![2.0 / 9.0, -1.0 / 9.0, -1.0 / 9.0, 2.0 / 9.0]),
+            _ => {
+                let angle = |j: usize| TAU * (2 * j + 1) as f64 / (2.0 * n as f64);
+                let weight = |j| (c * c + 2.0 * c * angle(j).cos() + 2.0 * c * c * (2.0 * angle(j)).cos()) / n as f64;
+                (1.0 - c * c, (0..n).map(weight).collect())
+            }
+        };
+        let terms = ring.iter().zip(weights).map(|(&u, w)| (w, p.points[u])).chain([(own, p.points[at])]);
+        mix(&terms.collect::<Vec<_>>())
+    };
+    let centre = |f: usize| -> Point {
+        let face = &p.faces[f];
+        let at = |i: usize| face[i % 3];
+        let open: Vec<usize> = (0..3).filter(|&i| across(f, at(i), at(i + 1)).is_none()).collect();
+        let point = |v: usize| p.points[v];
+        match open[..] {
+            [] => {
+                let irregular: Vec<Point> =
+                    (0..3).filter(|&i| valence(at(i)).is_some()).map(|i| ring(at(i), at(i + 1), at(i + 2))).collect();
+                if !irregular.is_empty() {
+                    return mean(&irregular);
+                }
+                let mut terms: Vec<(f64, Point)> = face.iter().map(|&v| (32.0 / 81.0, point(v))).collect();
+                for i in 0..3 {
+                    let (v, w) = (at(i), at(i + 1));
+                    let (g, tip) = across(f, v, w).unwrap();
+                    terms.push((-1.0 / 81.0, point(tip)));
+                    for (end, other) in [(v, w), (w, v)] {
+                        let far = match across(g, end, tip) {
+                            Some((_, far)) => point(far),
+                            None => mix(&[(1.0, point(end)), (1.0, point(tip)), (-1.0, point(other))]),
+                        };
+                        terms.push((-2.0 / 81.0, far));
+                    }
+                }
+                mix(&terms)
+            }
+            [i] => {
+                let (v, w, r) = (at(i), at(i + 1), at(i + 2));
+                if valence(r).is_some() {
+                    return ring(r, v, w);
+                }
+                let tips = [(w, r), (r, v)].map(|(x, y)| (-1.0 / 12.0, point(across(f, x, y).unwrap().1)));
+                mix(&[(0.5, point(r)), (1.0 / 3.0, point(v)), (1.0 / 3.0, point(w)), tips[0], tips[1]])
+            }
+            [_, _] => {
+                let i = (0..3).find(|i| !open.contains(i)).unwrap();
+                let (v, w, between) = (at(i), at(i + 1), at(i + 2));
+                let (three_eighths, tip) = (3.0 / 8.0, across(f, v, w).unwrap().1);
+                mix(&[
+                    (7.0 / 24.0, point(between)),
+                    (three_eighths, point(v)),
+                    (three_eighths, point(w)),
+                    (-1.0 / 24.0, point(tip)),
+                ])
+            }
+            _ => mean(face.iter().map(|&v| &p.points[v])),
+        }
+    };
+    let third = |v: usize, w: usize| {
+        let behind = |v: usize, w: usize| match corners.contains(&v) {
+            true => mix(&[(2.0, p.points[v]), (-1.0, p.points[w])]),
+            false => p.points[*a.rim[v].iter().find(|&&u| u != w).unwrap()],
+        };
+        // The cubic through parameters -1, 0, 1, 2 at 1/3.
+        let nodes = [(-1.0, behind(v, w)), (0.0, p.points[v]), (1.0, p.points[w]), (2.0, behind(w, v))];
+        let lagrange = |x: f64| nodes.iter().filter(|n| n.0 != x).map(|n| (1.0 / 3.0 - n.0) / (x - n.0)).product();
+        mix(&nodes.map(|(x, q)| (lagrange(x), q)))
+    };
+    turned(p, &a, trisect, p.points.clone(), centre, third)
 }
 
 #[test]
@@ -169,7 +225,7 @@ fn dual_schemes_equal_their_papers() {
 }
 
 #[test]
-fn sqrt3_equals_its_paper() {
+fn sqrt3_schemes_equal_their_papers() {
     for (name, soup) in gallery() {
         let mesh = build(&soup);
         if mesh.positions.len() != soup.positions.len() || soup.face_count() > 400 || !mesh.is_triangles() {
@@ -180,11 +236,13 @@ fn sqrt3_equals_its_paper() {
             let a = start.around();
             let lone = |v: &usize| boundary == Boundary::EdgeAndCorner && a.faces[*v].len() == 1;
             let corners: Vec<usize> = (0..start.points.len()).filter(lone).collect();
-            let step = std::cell::Cell::new(0);
-            compare(&name, &mesh, "sqrt3", boundary, start, |p| {
-                step.set(step.get() + 1);
-                sqrt3(p, step.get() % 2 == 0, &corners)
-            });
+            for (id, rule) in [("sqrt3", sqrt3 as Turning), ("interpolating-sqrt3", interpolating_sqrt3)] {
+                let step = std::cell::Cell::new(0);
+                compare(&name, &mesh, id, boundary, start.clone(), |p| {
+                    step.set(step.get() + 1);
+                    rule(p, step.get() % 2 == 0, &corners)
+                });
+            }
         }
     }
 }

@@ -13,6 +13,7 @@
 mod butterfly;
 mod catmull_clark;
 mod doo_sabin;
+mod interpolating_sqrt3;
 mod j_spline;
 mod linear;
 #[path = "loop.rs"]
@@ -24,6 +25,7 @@ mod sqrt3;
 pub use butterfly::Butterfly;
 pub use catmull_clark::CatmullClark;
 pub use doo_sabin::{DooSabin, Midpoint};
+pub use interpolating_sqrt3::InterpolatingSqrt3;
 pub use j_spline::JSpline;
 pub use linear::Linear;
 pub use loop_::Loop;
@@ -43,6 +45,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<JSpline>(),
     entry::<Butterfly>(),
     entry::<ModifiedButterfly>(),
+    entry::<InterpolatingSqrt3>(),
     entry::<DooSabin>(),
     entry::<Midpoint>(),
     entry::<Linear>(),

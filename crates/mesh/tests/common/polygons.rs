@@ -83,6 +83,59 @@ impl Polygons {
     }
 }
 
+/// The sqrt3 split: `old` are the vertices' new places, `centre` gives a face's point, and `third(v, w)` the point that cuts the
+/// rim's edge at a third of the way from v, where edges are cut.
+pub fn turned(
+    p: &Polygons,
+    a: &Around,
+    trisect: bool,
+    old: Vec<Point>,
+    centre: impl Fn(usize) -> Point,
+    third: impl Fn(usize, usize) -> Point,
+) -> Polygons {
+    let mut out = Polygons { points: old, faces: Vec::new() };
+    // Corners in order from the rim edge on, if there is one and it is cut; else from anywhere.
+    let cut: Vec<Option<[usize; 3]>> = p
+        .faces
+        .iter()
+        .map(|f| {
+            let turn = |i: usize| [f[i], f[(i + 1) % 3], f[(i + 2) % 3]];
+            (0..3).map(turn).find(|t| trisect && a.edges[&(t[0].min(t[1]), t[0].max(t[1]))].len() == 1)
+        })
+        .collect();
+    let mut centres: Vec<Vec<usize>> = Vec::new();
+    for (f, cut) in cut.iter().enumerate() {
+        let new = out.points.len();
+        match *cut {
+            None => {
+                out.points.push(centre(f));
+                centres.push(vec![new]);
+            }
+            Some([x, y, _]) => {
+                out.points.extend([third(x, y), third(y, x)]);
+                centres.push(vec![new, new + 1]);
+            }
+        }
+    }
+    // What an edge's end (v, w) of face f sees as the face's centre: the rim's points are dealt to the other two edges.
+    let seen = |f: usize, v: usize, w: usize| match cut[f] {
+        Some([_, y, z]) if [v, w].contains(&y) && [v, w].contains(&z) => centres[f][1],
+        _ => centres[f][0],
+    };
+    for (f, face) in p.faces.iter().enumerate() {
+        for i in 0..3 {
+            let (v, w) = (face[i], face[(i + 1) % 3]);
+            let sides = &a.edges[&(v.min(w), v.max(w))];
+            match sides.iter().find(|&&g| g != f) {
+                Some(&g) => out.faces.push(vec![v, seen(g, v, w), seen(f, v, w)]),
+                None if trisect => out.faces.push(vec![centres[f][0], centres[f][1], face[(i + 2) % 3]]),
+                None => out.faces.push(vec![v, w, centres[f][0]]),
+            }
+        }
+    }
+    out
+}
+
 pub fn polygons(soup: &limn_mesh::Soup) -> Polygons {
     Polygons {
         points: soup.positions.iter().map(|p| p.map(f64::from)).collect(),
