@@ -105,7 +105,9 @@ fn main() {
     for id in ["sqrt3", "j-spline", "butterfly", "modified-butterfly"] {
         table.row("creature, triangles", id, &triangles, 4);
     }
-    table.row("creature", "doo-sabin", &quads, 4);
+    for id in ["doo-sabin", "kobbelt"] {
+        table.row("creature", id, &quads, 4);
+    }
     table.row("pawn", "loop", &built("pawn"), 6);
     table.row("torus", "catmull-clark", &built("torus"), 5);
     table.row("icosahedron", "catmull-clark", &built("icosahedron"), 8);

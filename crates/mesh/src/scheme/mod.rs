@@ -15,6 +15,7 @@ mod catmull_clark;
 mod doo_sabin;
 mod interpolating_sqrt3;
 mod j_spline;
+mod kobbelt;
 mod linear;
 #[path = "loop.rs"]
 mod loop_;
@@ -27,6 +28,7 @@ pub use catmull_clark::CatmullClark;
 pub use doo_sabin::{DooSabin, Midpoint};
 pub use interpolating_sqrt3::InterpolatingSqrt3;
 pub use j_spline::JSpline;
+pub use kobbelt::Kobbelt;
 pub use linear::Linear;
 pub use loop_::Loop;
 pub use modified_butterfly::ModifiedButterfly;
@@ -46,6 +48,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<Butterfly>(),
     entry::<ModifiedButterfly>(),
     entry::<InterpolatingSqrt3>(),
+    entry::<Kobbelt>(),
     entry::<DooSabin>(),
     entry::<Midpoint>(),
     entry::<Linear>(),
