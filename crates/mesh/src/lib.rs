@@ -27,6 +27,7 @@
 
 mod connect;
 pub mod fairing;
+pub mod limit;
 pub mod marks;
 pub mod mesh;
 pub mod order;
@@ -46,6 +47,7 @@ pub mod triangulate;
 mod weld;
 
 pub use fairing::Fairing;
+pub use limit::{Limit, LimitRule, limit};
 pub use mesh::{Mesh, Stats, TopologyError};
 pub use plan::{Plan, Run};
 pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine};

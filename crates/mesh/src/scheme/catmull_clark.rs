@@ -12,6 +12,7 @@
 //! Cost: about 20 ns an output face. Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
 use super::{Accepts, Family, Info, Scheme, Tags, face_centroids, kept_or_curve};
+use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -34,6 +35,7 @@ impl Scheme for CatmullClark {
     };
 
     const COMMON: bool = true;
+    const LIMIT: LimitRule = LimitRule::CatmullClark;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -14,6 +14,7 @@
 //! Cost: about 8 ns an output face. Limit: it never smooths.
 
 use super::{Accepts, Family, Info, Scheme, Tags, face_centroids};
+use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -36,6 +37,7 @@ impl Scheme for Linear {
     };
 
     const COMMON: bool = true;
+    const LIMIT: LimitRule = LimitRule::Itself;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

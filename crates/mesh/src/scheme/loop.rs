@@ -18,6 +18,7 @@
 //! Cost: about 12 ns an output face (half a vertex each). Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
 use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, kept_or_curve};
+use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -39,6 +40,13 @@ pub(crate) fn beta(n: u32) -> f64 {
     }
 }
 
+/// The weight of one neighbour at valence `n`, by the parameters.
+#[inline(always)]
+pub(crate) fn weight(n: u32, tags: Tags<'_>) -> f64 {
+    let warren = tags.params[0] == 1.0;
+    if warren && n > 3 { 0.375 / f64::from(n) } else { beta(n) }
+}
+
 impl Scheme for Loop {
     const INFO: Info = Info {
         id: "loop",
@@ -58,6 +66,7 @@ impl Scheme for Loop {
     };
 
     const COMMON: bool = true;
+    const LIMIT: LimitRule = LimitRule::Loop;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
@@ -75,7 +84,6 @@ impl Scheme for Loop {
                 row.vertex(c.origin(c.prev(twin)), 0.125);
             }
         });
-        let warren = tags.params[0] == 1.0;
         sink.pass(0, c.vertices(), |v, row| {
             if !kept_or_curve(c, v, tags, row) {
                 let mut n = 0u32;
@@ -83,7 +91,7 @@ impl Scheme for Loop {
                     row.vertex(c.origin(c.next(h)), 1.0);
                     n += 1;
                 });
-                let beta = if warren && n > 3 { 0.375 / f64::from(n) } else { beta(n) };
+                let beta = weight(n, tags);
                 row.scale(beta);
                 row.vertex(v, 1.0 - f64::from(n) * beta);
             }

@@ -35,6 +35,9 @@ pub use modified_butterfly::ModifiedButterfly;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use sqrt3::Sqrt3;
 
+pub(crate) use loop_::weight as loop_weight;
+
+use crate::limit::LimitRule;
 use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{FaceShape, Level, Split};
 use crate::topology::{Connectivity, is_boundary};
@@ -220,6 +223,9 @@ pub trait Scheme: 'static {
     /// Whether it is chosen often enough to be compiled for every connectivity and sink: twice the code.
     const COMMON: bool = false;
 
+    /// How the limit of its vertices is found.
+    const LIMIT: LimitRule = LimitRule::Analysis;
+
     /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K);
 }
@@ -232,6 +238,8 @@ type RecordFn = fn(&Level<'_>, Split, Tags<'_>, &mut Record<'_>);
 pub struct Entry {
     /// Facts.
     pub info: Info,
+    /// How the limit of its vertices is found.
+    pub limit: LimitRule,
     eval: EvalFn,
     record: RecordFn,
 }
@@ -246,6 +254,7 @@ impl PartialEq for Entry {
 const fn entry<S: Scheme>() -> Entry {
     Entry {
         info: S::INFO,
+        limit: S::LIMIT,
         eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
             (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
             (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),

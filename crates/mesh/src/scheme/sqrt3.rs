@@ -11,6 +11,7 @@
 //! C2 but at extraordinary vertices, C1 there. Cost: about 35 ns an output face.
 
 use super::{Accepts, Family, Info, Scheme, Tags};
+use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -31,6 +32,8 @@ impl Scheme for Sqrt3 {
         interpolating: false,
         params: &[],
     };
+
+    const LIMIT: LimitRule = LimitRule::Sqrt3;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

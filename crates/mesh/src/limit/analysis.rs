@@ -1,0 +1,374 @@
+//! Any scheme's masks, from what its own rules do around a vertex.
+//!
+//! A neighbourhood is cut out and refined, the scheme's rows are recorded, and the same neighbourhood of the child is cut
+//! out of that. As soon as parent and child look alike (the next extraordinary vertex is out of sight then) the rows
+//! between them are the local subdivision matrix S, whose left eigenvectors are the mask. The rows of the steps before take
+//! it back to the vertices that there are.
+//!
+//! ```text
+//!   patch 0 ── rows ──> patch 1 ── rows ──> patch 2 = patch 3       l S = l,   mask = l R1 R0
+//!   (level)     R0       (child)    R1         └── S ──┘
+//! ```
+//!
+//! In a dual scheme a vertex becomes a face of its images; what stays is the middle of that face, or on a boundary the
+//! middle of the edge between the first image and the last.
+//!
+//! Neighbourhoods that look alike share one analysis. Cost: some 300 us for one of its own kind, about 5 us for the next of
+//! that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
+//! vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
+
+use super::Mask;
+use super::eigen::{self, Rows, back};
+use super::patch::{Anchor, Patch, Stamps};
+use crate::scheme::{Entry, Tags};
+use crate::sink::{Cursor, Source};
+use crate::split::{Level, Split};
+use crate::topology::{Connectivity, is_boundary};
+use crate::track::Owned;
+use std::f64::consts::PI;
+
+/// How many refinements a neighbourhood may take until it looks like its parent.
+const DEPTH: u32 = 10;
+/// How many rings a neighbourhood may have.
+const WIDEST: u32 = 8;
+
+/// Masks by kinds of neighbourhoods.
+#[derive(Debug)]
+pub(super) struct Analysis {
+    level: Stamps,
+    child: Stamps,
+    rings: u32,
+    /// By hashes in order; those of one hash one after the other.
+    kinds: Vec<(u64, Kind)>,
+}
+
+/// A kind of neighbourhood: its mask over the patch's vertices. No weights if nothing was found.
+#[derive(Debug)]
+struct Kind {
+    key: Vec<u32>,
+    point: Vec<f64>,
+    tangents: Option<[Vec<f64>; 2]>,
+}
+
+/// What a scheme does on a level.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting<'a> {
+    pub scheme: &'static Entry,
+    pub split: Split,
+    pub tags: Tags<'a>,
+}
+
+impl Analysis {
+    pub fn new(split: Split) -> Analysis {
+        // Few schemes look at more than two rings; a ring more keeps the patch's own rim away.
+        let rings = if split.keeps_vertices() { 3 } else { 1 };
+        Analysis { level: Stamps::default(), child: Stamps::default(), rings, kinds: Vec::new() }
+    }
+
+    /// Fills in the mask of `v`.
+    pub fn mask(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32, mask: &mut Mask) {
+        loop {
+            let sharp = |v: u32| setting.tags.is_sharp(level, v);
+            let patch = Patch::cut(level, Anchor::Vertex(v), self.rings, sharp, &mut self.level);
+            let hash = hash(&patch.key);
+            let at = self.kinds.partition_point(|k| k.0 < hash);
+            let known = (at..self.kinds.len())
+                .take_while(|&i| self.kinds[i].0 == hash)
+                .find(|&i| self.kinds[i].1.key == patch.key);
+            let i = match known {
+                Some(i) => i,
+                None => match analyse(&patch, self.rings, setting, &mut self.child) {
+                    Found::Wider if self.rings < WIDEST => {
+                        self.rings += 1;
+                        self.kinds.clear();
+                        continue;
+                    }
+                    Found::Kind(kind) => {
+                        self.kinds.insert(at, (hash, kind));
+                        at
+                    }
+                    Found::Wider | Found::Nothing => {
+                        let kind = Kind { key: patch.key.clone(), point: Vec::new(), tangents: None };
+                        self.kinds.insert(at, (hash, kind));
+                        at
+                    }
+                },
+            };
+            let kind = &self.kinds[i].1;
+            if kind.point.is_empty() {
+                return mask.keep(v);
+            }
+            for (local, &v) in patch.vertices.iter().enumerate() {
+                if kind.point[local] != 0.0 {
+                    mask.point.push((v, kind.point[local]));
+                }
+                if let Some([a, b]) = &kind.tangents
+                    && (a[local] != 0.0 || b[local] != 0.0)
+                {
+                    mask.tangents.push((v, [a[local], b[local]], 0));
+                }
+            }
+            mask.sectors = u32::from(kind.tangents.is_some());
+            return;
+        }
+    }
+}
+
+/// Fowler, Noll and Vo's hash.
+fn hash(key: &[u32]) -> u64 {
+    key.iter().fold(0xcbf2_9ce4_8422_2325, |h, &x| (h ^ u64::from(x)).wrapping_mul(0x100_0000_01b3))
+}
+
+enum Found {
+    Kind(Kind),
+    /// The scheme looks farther than the patch reaches.
+    Wider,
+    Nothing,
+}
+
+/// The mask over the vertices of `first`.
+fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps) -> Found {
+    let (mut anchor, mut split) = (Anchor::Vertex(0), setting.split);
+    if let Split::Sqrt3 { .. } = split {
+        let rim = |v: u32| is_boundary(first.topology.twin(first.topology.vertex_half_edge(v)));
+        if (0..first.topology.vertices()).any(|v| first.rings[v as usize] < rings && rim(v)) {
+            return Found::Nothing;
+        }
+        split = Split::Sqrt3 { trisect: false };
+    }
+    let mut patches: Vec<Patch> = Vec::new();
+    let mut steps: Vec<Rows> = Vec::new();
+    for _ in 0..DEPTH {
+        let patch = patches.last().unwrap_or(first);
+        let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, stamps) else {
+            return Found::Nothing;
+        };
+        steps.push(rows);
+        let alike = child.key == patch.key;
+        patches.push(child);
+        anchor = next;
+        if alike {
+            break;
+        }
+        if patches.len() == DEPTH as usize {
+            return Found::Nothing;
+        }
+    }
+    let (Some(patch), Some(s)) = (patches.last(), steps.pop()) else { return Found::Nothing };
+    let Some(found) = eigenvectors(patch, anchor, &s, rings, setting.scheme.info.interpolating) else {
+        return Found::Wider;
+    };
+    let Some(point) = found.0 else { return Found::Nothing };
+    // Back to the first patch.
+    let down = |mut weights: Vec<f64>| {
+        for (i, rows) in steps.iter().enumerate().rev() {
+            let size = if i == 0 { first.vertices.len() } else { patches[i - 1].vertices.len() };
+            weights = back(rows, &weights, size);
+        }
+        weights
+    };
+    Found::Kind(Kind { key: first.key.clone(), point: down(point), tangents: found.1.map(|t| t.map(down)) })
+}
+
+/// One refinement of a patch: where its anchor goes, the child's patch, and the rows of its vertices over the patch's.
+fn refine(
+    patch: &Patch,
+    anchor: Anchor,
+    rings: u32,
+    setting: Setting<'_>,
+    stamps: &mut Stamps,
+) -> Option<(Anchor, Patch, Rows)> {
+    let t = &patch.topology;
+    let level = Level::Base(t);
+    let lone = setting.split.lone(t);
+    let tags = patch.tags(setting.tags, &lone);
+    let mut child = Owned::below(&level, setting.split);
+    let mut at = 0;
+    while !child.fill(&level, &mut at, &mut { usize::MAX }) {}
+    let child = child.view();
+
+    let mut rows: Rows = vec![Vec::new(); child.vertices() as usize];
+    let mut sum = vec![0.0; t.vertices() as usize];
+    let mut used: Vec<u32> = Vec::new();
+    let mut take = |c: u32, row: &[(Source, f64)], _: [f64; 3]| {
+        let mut add = |v: u32, w: f64| {
+            if sum[v as usize] == 0.0 {
+                used.push(v);
+            }
+            sum[v as usize] += w;
+        };
+        for &(source, w) in row {
+            match source {
+                Source::Vertex(v) => add(v, w),
+                Source::Child(c) => rows[c as usize].iter().for_each(|&(v, x)| add(v, w * x)),
+            }
+        }
+        // A vertex whose weight was zero in between is named twice; the second time nothing is left of it.
+        rows[c as usize] =
+            used.drain(..).map(|v| (v, std::mem::take(&mut sum[v as usize]))).filter(|x| x.1 != 0.0).collect();
+    };
+    setting.scheme.rows((&level, setting.split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
+
+    let next = descend(patch, anchor, setting.split, &child)?;
+    // Old vertices keep their numbers, or there are none.
+    let keeps = setting.split.keeps_vertices();
+    let sharp = |v: u32| keeps && patch.sharp.get(v as usize).is_some_and(|s| *s);
+    let cut = Patch::cut(&child, next, rings, sharp, stamps);
+    let rows = cut.vertices.iter().map(|&v| rows[v as usize].clone()).collect();
+    // In its own numbering the anchor comes first.
+    let own = match next {
+        Anchor::Vertex(_) => Anchor::Vertex(0),
+        Anchor::Edge(_) => Anchor::Edge(0),
+        Anchor::Face(_) => Anchor::Face(0),
+    };
+    Some((own, cut, rows))
+}
+
+/// Where the anchor of a patch is in its child.
+fn descend(patch: &Patch, anchor: Anchor, split: Split, child: &impl Connectivity) -> Option<Anchor> {
+    let t = &patch.topology;
+    if split.keeps_vertices() {
+        return Some(anchor);
+    }
+    // The half-edge of the child from vertex a to vertex b.
+    let between = |a: u32, b: u32| {
+        let mut found = None;
+        child.turn(a, |h| {
+            if child.origin(child.next(h)) == b {
+                found = Some(h);
+            }
+        });
+        found
+    };
+    match anchor {
+        Anchor::Face(f) => Some(Anchor::Face(f)),
+        Anchor::Edge(h) if is_boundary(t.twin(h)) => between(h, t.next(h)).map(Anchor::Edge),
+        Anchor::Edge(h) => {
+            // The face of the edge: its sides are those of four images.
+            let h = between(t.next(h), h)?;
+            Some(Anchor::Face(child.face(h)))
+        }
+        Anchor::Vertex(v) => {
+            let mut images = Vec::new();
+            t.turn(v, |h| images.push(h));
+            let own = |x: u32| if x < t.half_edges() { t.origin(x) == v } else { images.len() == 1 };
+            let rim = is_boundary(t.twin(t.vertex_half_edge(v)));
+            let mut found = None;
+            let &first = images.first()?;
+            child.turn(first, |h| {
+                let f = child.face(h);
+                if rim {
+                    // The edge between the first image and the last.
+                    let on_rim = child.face_half_edges(f).find(|&g| {
+                        is_boundary(child.twin(g)) && own(child.origin(g)) && own(child.origin(child.next(g)))
+                    });
+                    found = found.or(on_rim.map(Anchor::Edge));
+                } else if child.face_half_edges(f).all(|g| own(child.origin(g))) {
+                    found = Some(Anchor::Face(f));
+                }
+            });
+            match (found, images.len()) {
+                (None, 1) => Some(Anchor::Vertex(first)),
+                (None, 2) => between(first, images[1]).or(between(images[1], first)).map(Anchor::Edge),
+                (found, _) => found,
+            }
+        }
+    }
+}
+
+/// The eigenvectors of `s` at the anchor of `patch`, over its vertices; none if they need more than the patch has.
+type Eigenvectors = (Option<Vec<f64>>, Option<[Vec<f64>; 2]>);
+
+fn eigenvectors(patch: &Patch, anchor: Anchor, s: &Rows, rings: u32, interpolating: bool) -> Option<Eigenvectors> {
+    let t = &patch.topology;
+    // Where to start: the anchor's own vertices, those around it in order, and whether it lies on a boundary.
+    let (mut own, mut around, mut rim) = (Vec::new(), Vec::new(), false);
+    match anchor {
+        Anchor::Vertex(v) => {
+            own.push(v);
+            let arriving = t.turn(v, |h| around.push(t.origin(t.next(h))));
+            rim = arriving.is_some();
+            around.extend(arriving.map(|h| t.origin(h)));
+        }
+        Anchor::Edge(h) => {
+            rim = true;
+            own.extend([t.origin(t.next(h)), t.origin(h)]);
+            // From the edge's end around the face to its beginning.
+            let mut g = t.next(h);
+            while g != h {
+                around.push(t.origin(g));
+                g = t.next(g);
+            }
+            around.push(t.origin(h));
+        }
+        Anchor::Face(f) => {
+            own.extend(t.face_half_edges(f).map(|h| t.origin(h)));
+            around.clone_from(&own);
+        }
+    }
+    // Everything that their rows read, and the rows of that, and so on.
+    let mut index = vec![u32::MAX; patch.vertices.len()];
+    let mut members: Vec<u32> = Vec::new();
+    for &v in own.iter().chain(&around) {
+        if index[v as usize] == u32::MAX {
+            index[v as usize] = members.len() as u32;
+            members.push(v);
+        }
+    }
+    let mut done = 0;
+    while done < members.len() {
+        let v = members[done] as usize;
+        if patch.rings[v] >= rings && rings > 0 {
+            return None;
+        }
+        for &(u, _) in &s[v] {
+            if index[u as usize] == u32::MAX {
+                index[u as usize] = members.len() as u32;
+                members.push(u);
+            }
+        }
+        done += 1;
+    }
+    let small: Rows =
+        members.iter().map(|&v| s[v as usize].iter().map(|&(u, w)| (index[u as usize], w)).collect()).collect();
+    let spread = |small: &[f64]| {
+        let mut all = vec![0.0; patch.vertices.len()];
+        members.iter().zip(small).for_each(|(&v, &w)| all[v as usize] = w);
+        all
+    };
+    let mut start = vec![0.0; members.len()];
+    for &v in &own {
+        start[index[v as usize] as usize] = 1.0 / own.len() as f64;
+    }
+    let kept = matches!(anchor, Anchor::Vertex(_)) && patch.sharp[own[0] as usize];
+    let point = if interpolating { Some(start) } else { eigen::point(&small, start) };
+    let Some(point) = point else { return Some((None, None)) };
+    let faces = around.len() - usize::from(rim);
+    if kept && !(rim && faces == 1) {
+        return Some((Some(spread(&point)), None));
+    }
+    let mut pattern = [vec![0.0; members.len()], vec![0.0; members.len()]];
+    for (i, &v) in around.iter().enumerate() {
+        let angle = if rim { PI / faces as f64 } else { 2.0 * PI / faces as f64 } * i as f64;
+        let v = index[v as usize] as usize;
+        pattern[0][v] += if rim { f64::from(i == 0) - f64::from(i == faces) } else { libm::cos(angle) };
+        pattern[1][v] += if rim && (i == 0 || i == faces) { 0.0 } else { libm::sin(angle) };
+    }
+    if rim && faces == 1 {
+        // Nothing lies between: what the two ends are away from the middle.
+        pattern[1].clone_from(&start_of(&around, &index, members.len()));
+    }
+    for l in &mut pattern {
+        let sum: f64 = l.iter().sum();
+        l.iter_mut().zip(&point).for_each(|(x, p)| *x -= sum * p);
+    }
+    let plane = eigen::plane(&small, &point, pattern, rim);
+    Some((Some(spread(&point)), plane.map(|p| p.map(|l| spread(&l)))))
+}
+
+/// One for each of these.
+fn start_of(vertices: &[u32], index: &[u32], size: usize) -> Vec<f64> {
+    let mut l = vec![0.0; size];
+    vertices.iter().for_each(|&v| l[index[v as usize] as usize] = 1.0);
+    l
+}

@@ -1,0 +1,142 @@
+//! Sqrt3's limit masks.
+//!
+//! Inside, a step takes the mean m of the n neighbours to v/3 + 2m/3 and v to (1 - a) v + a m, so
+//!
+//! ```text
+//!   inside, n edges   (v + 3 a m) / (1 + 3 a)         tangents: cos and sin of 2 pi i / n         Kobbelt 2000, section 3
+//!   curve             (1, 4, 1) / 6, the cubic B-spline's        tangents: (1, -1) along it, and across it
+//!   corner            itself
+//! ```
+//!
+//! Across a curve with k faces beside it, two steps (the second cuts the curve's edges in three) take the inner neighbours
+//! e_i to 5/9 v + (e_(i-1) + 2 e_i + e_(i+1)) / 9, which keeps sin(i theta), theta = pi / k, with the eigenvalue
+//! (2 + 2 cos theta) / 9. The rows of v and of the curve's neighbours give their weights: with Z = cot(theta / 2) the sum
+//! of the sines, x = -Z / (3 + 6 cos theta) for v and y = -(x + Z) / 2 for both ends. At k = 1 the second difference.
+//!
+//! Before a step that cuts the boundary, faces there are about to change; masks are those of the children then, taken back
+//! by the rows of that step.
+
+use super::{Kind, Mask, Ring};
+use crate::topology::{Connectivity, is_boundary};
+use std::f64::consts::PI;
+
+/// Weights of a neighbour for the limit point and both tangents.
+type Weights = [f64; 3];
+
+/// How much of a vertex of valence `n` goes to its neighbours' mean.
+fn share(n: usize) -> f64 {
+    (4.0 - 2.0 * libm::cos(2.0 * PI / n as f64)) / 9.0
+}
+
+/// The mask of `v`. `trisect` says whether the next step cuts boundary edges, `sharp` which vertices stay.
+pub(super) fn mask(
+    c: &impl Connectivity,
+    ring: &Ring,
+    (kind, trisect): (Kind, bool),
+    v: u32,
+    sharp: impl Fn(u32) -> bool,
+    mask: &mut Mask,
+) {
+    // The children that will be v's neighbours, each as what it is made of.
+    let mut children: Vec<Vec<(u32, f64)>> = Vec::new();
+    let changes = trisect && (ring.arriving.is_some() || ring.spokes.iter().any(|&h| is_boundary(c.twin(c.next(h)))));
+    if !changes {
+        children.extend(ring.neighbours.iter().map(|&e| vec![(e, 1.0)]));
+    } else {
+        let last = ring.spokes.len() - 1;
+        for (i, &h) in ring.spokes.iter().enumerate() {
+            if is_boundary(c.twin(h)) && i == 0 {
+                children.push(third(c, h, false, &sharp));
+            } else if ring.arriving.is_some() && i == last {
+                // Both ends of the curve are pushed for themselves.
+            } else if is_boundary(c.twin(c.next(h))) {
+                children.push(third(c, c.next(h), false, &sharp));
+                children.push(third(c, c.next(h), true, &sharp));
+            } else {
+                let [a, b] = [c.origin(c.next(h)), c.origin(c.prev(h))];
+                children.push([v, a, b].map(|v| (v, 1.0 / 3.0)).to_vec());
+            }
+        }
+        children.extend(ring.arriving.map(|h| third(c, h, true, &sharp)));
+    }
+    let mut own = [0.0; 3];
+    let mut weights: Vec<Weights> = Vec::with_capacity(children.len());
+    let k = children.len().max(2) - 1;
+    match kind {
+        Kind::Smooth => {
+            let n = children.len() as f64;
+            let a = share(children.len());
+            own[0] = 1.0 / (1.0 + 3.0 * a);
+            let point = 3.0 * a / (1.0 + 3.0 * a) / n;
+            for i in 0..children.len() {
+                let angle = 2.0 * PI * i as f64 / n;
+                weights.push([point, libm::cos(angle), libm::sin(angle)]);
+            }
+            if changes {
+                // v's child, by the valence before the step; its neighbours take a share each.
+                let b = share(ring.neighbours.len());
+                for &e in &ring.neighbours {
+                    mask.point.push((e, own[0] * b / ring.neighbours.len() as f64));
+                }
+                own[0] *= 1.0 - b;
+            }
+        }
+        Kind::Curve(a, b) => {
+            let at = |i: u32| ring.neighbours[i as usize];
+            mask.point.extend([(at(a), 1.0 / 6.0), (at(b), 1.0 / 6.0), (v, 4.0 / 6.0)]);
+            let theta = PI / k as f64;
+            let (s, cos) = (libm::sin(theta), libm::cos(theta));
+            let z = if k == 1 { 0.0 } else { (1.0 + cos) / s };
+            let x = if k == 1 { -2.0 } else { -z / (3.0 + 6.0 * cos) };
+            let y = -0.5 * (x + z);
+            for i in 0..=k {
+                let end = i == 0 || i == k;
+                let along = f64::from(i == 0) - f64::from(i == k);
+                weights.push([0.0, along, if end { y } else { libm::sin(i as f64 * theta) }]);
+            }
+            own[2] = x;
+            if changes {
+                // v' = (4 a + 19 v + 4 b) / 27.
+                mask.tangents.extend([at(a), at(b)].map(|e| (e, [0.0, x * 4.0 / 27.0], 0)));
+                own[2] = x * 19.0 / 27.0;
+            }
+        }
+        Kind::Corner => {
+            mask.point.push((v, 1.0));
+            if ring.arriving.is_none() || k > 2 {
+                return;
+            }
+            weights.resize(k + 1, [0.0; 3]);
+            (weights[0][1], weights[k][2]) = (1.0, 1.0);
+            (own[1], own[2]) = (-1.0, -1.0);
+        }
+    }
+    mask.sectors = 1;
+    for (child, [point, a, b]) in children.iter().zip(&weights) {
+        for &(v, w) in child {
+            if *point != 0.0 {
+                mask.point.push((v, point * w));
+            }
+            mask.tangents.push((v, [a * w, b * w], 0));
+        }
+    }
+    if own[0] != 0.0 {
+        mask.point.push((v, own[0]));
+    }
+    mask.tangents.push((v, [own[1], own[2]], 0));
+}
+
+/// The first or second point that cuts boundary half-edge `h` in three: the rule of [`crate::scheme::Sqrt3`].
+fn third(c: &impl Connectivity, h: u32, second: bool, sharp: &impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
+    let (a, b) = (c.origin(h), c.origin(c.next(h)));
+    let (near, far) = if second { (b, a) } else { (a, b) };
+    if sharp(near) {
+        return vec![(near, 18.0 / 27.0), (far, 9.0 / 27.0)];
+    }
+    let beyond = if second {
+        c.origin(c.next(c.vertex_half_edge(b)))
+    } else {
+        c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving))
+    };
+    vec![(near, 16.0 / 27.0), (far, 10.0 / 27.0), (beyond, 1.0 / 27.0)]
+}
