@@ -28,7 +28,7 @@ use crate::track::Owned;
 use std::f64::consts::PI;
 
 /// How many refinements a neighbourhood may take until it looks like its parent.
-const DEPTH: u32 = 10;
+const DEPTH: u32 = 8;
 /// How many rings a neighbourhood may have.
 const WIDEST: u32 = 8;
 
@@ -138,6 +138,7 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps)
     }
     let mut patches: Vec<Patch> = Vec::new();
     let mut steps: Vec<Rows> = Vec::new();
+    let mut stationary = false;
     for _ in 0..DEPTH {
         let patch = patches.last().unwrap_or(first);
         let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, stamps) else {
@@ -147,18 +148,26 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps)
         let alike = child.key == patch.key;
         patches.push(child);
         anchor = next;
+        stationary = alike;
         if alike {
             break;
         }
-        if patches.len() == DEPTH as usize {
-            return Found::Nothing;
-        }
     }
     let (Some(patch), Some(s)) = (patches.last(), steps.pop()) else { return Found::Nothing };
-    let Some(found) = eigenvectors(patch, anchor, &s, rings, setting.scheme.info.interpolating) else {
-        return Found::Wider;
+    let (point, tangents) = if stationary {
+        match eigenvectors(patch, anchor, &s, rings, setting.scheme.info.interpolating) {
+            Some((Some(point), tangents)) => (point, tangents),
+            Some((None, _)) => return Found::Nothing,
+            None => return Found::Wider,
+        }
+    } else {
+        // Faces around it grow without end (rounded corners), but its own points may not depend on them.
+        let own = patch.rings.iter().take_while(|r| **r == 0).count();
+        let Some(mut point) = s.get(..own).and_then(|s| alone(s, own)) else { return Found::Nothing };
+        let size = if steps.is_empty() { first.vertices.len() } else { patches[steps.len() - 1].vertices.len() };
+        point.resize(size, 0.0);
+        (point, None)
     };
-    let Some(point) = found.0 else { return Found::Nothing };
     // Back to the first patch.
     let down = |mut weights: Vec<f64>| {
         for (i, rows) in steps.iter().enumerate().rev() {
@@ -167,7 +176,13 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps)
         }
         weights
     };
-    Found::Kind(Kind { key: first.key.clone(), point: down(point), tangents: found.1.map(|t| t.map(down)) })
+    Found::Kind(Kind { key: first.key.clone(), point: down(point), tangents: tangents.map(|t| t.map(down)) })
+}
+
+/// The limit point over the first `own` vertices, if they depend on each other only.
+fn alone(rows: &[Vec<(u32, f64)>], own: usize) -> Option<Vec<f64>> {
+    let closed = rows.iter().flatten().all(|(v, _)| (*v as usize) < own);
+    if closed { eigen::point(&rows.to_vec(), vec![1.0 / own as f64; own]) } else { None }
 }
 
 /// One refinement of a patch: where its anchor goes, the child's patch, and the rows of its vertices over the patch's.
@@ -209,7 +224,7 @@ fn refine(
     };
     setting.scheme.rows((&level, setting.split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
 
-    let next = descend(patch, anchor, setting.split, &child)?;
+    let next = descend(patch, anchor, (setting.split, &lone), &child)?;
     // Old vertices keep their numbers, or there are none.
     let keeps = setting.split.keeps_vertices();
     let sharp = |v: u32| keeps && patch.sharp.get(v as usize).is_some_and(|s| *s);
@@ -225,7 +240,7 @@ fn refine(
 }
 
 /// Where the anchor of a patch is in its child.
-fn descend(patch: &Patch, anchor: Anchor, split: Split, child: &impl Connectivity) -> Option<Anchor> {
+fn descend(patch: &Patch, anchor: Anchor, (split, lone): (Split, &[u32]), child: &impl Connectivity) -> Option<Anchor> {
     let t = &patch.topology;
     if split.keeps_vertices() {
         return Some(anchor);
@@ -242,7 +257,11 @@ fn descend(patch: &Patch, anchor: Anchor, split: Split, child: &impl Connectivit
     };
     match anchor {
         Anchor::Face(f) => Some(Anchor::Face(f)),
-        Anchor::Edge(h) if is_boundary(t.twin(h)) => between(h, t.next(h)).map(Anchor::Edge),
+        Anchor::Edge(h) if is_boundary(t.twin(h)) => {
+            // From the image behind a corner alone to the one before the next.
+            let second = lone.binary_search(&h).map_or(h, |i| t.half_edges() + i as u32);
+            between(second, t.next(h)).map(Anchor::Edge)
+        }
         Anchor::Edge(h) => {
             // The face of the edge: its sides are those of four images.
             let h = between(t.next(h), h)?;
@@ -251,7 +270,9 @@ fn descend(patch: &Patch, anchor: Anchor, split: Split, child: &impl Connectivit
         Anchor::Vertex(v) => {
             let mut images = Vec::new();
             t.turn(v, |h| images.push(h));
-            let own = |x: u32| if x < t.half_edges() { t.origin(x) == v } else { images.len() == 1 };
+            // A child is a corner's image, or the second of a corner alone.
+            let corner = |x: u32| x.checked_sub(t.half_edges()).map_or(x, |i| lone[i as usize]);
+            let own = |x: u32| t.origin(corner(x)) == v;
             let rim = is_boundary(t.twin(t.vertex_half_edge(v)));
             let mut found = None;
             let &first = images.first()?;

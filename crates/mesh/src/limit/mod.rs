@@ -13,13 +13,14 @@
 //!    1 --.-- 4 --.
 //! ```
 //!
-//! [`Projector`] finds the mask of any vertex: in closed form for Catmull-Clark ([`catmull_clark`]), Loop ([`loop_`]) and
-//! the boundaries and corners of both.
+//! [`Projector`] finds the mask of any vertex: in closed form for Catmull-Clark, Loop and sqrt3 with their boundaries and
+//! corners, by eigen-analysis of the scheme's own rows everywhere else. An interpolating scheme's vertices stay; a dual
+//! scheme's, which cut themselves off at every step, go where the mean of their images does.
 //!
 //! Sources: M. Halstead, M. Kass, T. DeRose, "Efficient, fair interpolation using Catmull-Clark surfaces" (1993); C. Loop
 //! (1987); D. Zorin, P. Schroeder, "Subdivision for modeling and animation" (2000, chapter 3) for the analysis.
 //! Cost: about 100 ns a vertex in closed form. Limit: tangents span the tangent plane and are not derivatives of any
-//! parameters.
+//! parameters. Constants that a rule adds (a fractal's) are left out: the limit is that of the smooth scheme from there on.
 
 mod analysis;
 mod catmull_clark;
@@ -151,7 +152,9 @@ impl Ring {
     /// Turns around `v`. Cost: the valence.
     fn read(&mut self, c: &impl Connectivity, v: u32) {
         let Ring { spokes, neighbours, creases, .. } = self;
-        (spokes.clear(), neighbours.clear(), creases.clear());
+        spokes.clear();
+        neighbours.clear();
+        creases.clear();
         self.arriving = c.turn(v, |h| {
             spokes.push(h);
             neighbours.push(c.origin(c.next(h)));
