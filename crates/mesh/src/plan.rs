@@ -102,12 +102,15 @@ impl Plan {
     /// The steps on `mesh`, one after the other, up to the first that cannot be made.
     pub(crate) fn walk<'p>(&'p self, mesh: &'p Mesh) -> impl Iterator<Item = Result<Step, RefineError>> + 'p {
         let mut shape = mesh.face_shape();
-        let mut held = Held::Full;
+        let (mut held, mut uncounted) = (Held::Full, false);
         (0..self.level).map(move |step| {
             let run = self.run(step);
             let info = &run.scheme.info;
             let params = run.params.of(info);
             let split = match info.split(shape, self.rules.boundary, &params) {
+                Some(Split::Mixed) if uncounted => {
+                    return Err(RefineError::Uncounted { scheme: info.name, level: step });
+                }
                 Some(split) => split.at(step - run.from),
                 None if step > 0 => return Err(RefineError::NeedsTrianglesAt { scheme: info.name, level: step }),
                 None => {
@@ -122,6 +125,7 @@ impl Plan {
             };
             let stored = split.stores() || (held == Held::Triangles && info.accepts == Accepts::Polygons);
             shape = split.face_shape(shape);
+            uncounted = matches!(split, Split::Dual { .. });
             held = match split {
                 Split::Quad => Held::Quads,
                 Split::Triangle => Held::Triangles,
@@ -133,7 +137,7 @@ impl Plan {
 
     /// Whether some step leaves texture coordinates out.
     pub fn drops_uv(&self, mesh: &Mesh) -> bool {
-        self.walk(mesh).any(|step| step.is_ok_and(|s| s.split.stores()))
+        self.walk(mesh).any(|step| step.is_ok_and(|s| !s.split.keeps_corners()))
     }
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.

@@ -35,12 +35,12 @@ pub struct Prediction {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RefineError {
     /// The result does not fit.
-    #[error("level {level} {}; choose level {fits} or lower", too_large(*.predicted, *.budget))]
+    #[error("level {level} {}; choose level {fits} or lower", too_large(.predicted.as_deref(), *.budget))]
     TooLarge {
         /// The level asked for.
         level: u32,
         /// What it would make; none if the counts leave 64 bits.
-        predicted: Option<Prediction>,
+        predicted: Option<Box<Prediction>>,
         /// The bytes there are.
         budget: u64,
         /// The highest level that fits.
@@ -66,9 +66,17 @@ pub enum RefineError {
         /// The level.
         level: u32,
     },
+    /// The scheme treats triangles in their own way right after a dual split, whose triangles are not counted beforehand.
+    #[error("{scheme} cannot follow a dual scheme at level {level} at once; put `scheme linear from={level}` between")]
+    Uncounted {
+        /// The scheme's name.
+        scheme: &'static str,
+        /// The level.
+        level: u32,
+    },
 }
 
-fn too_large(p: Option<Prediction>, budget: u64) -> String {
+fn too_large(p: Option<&Prediction>, budget: u64) -> String {
     let Some(p) = p else { return "would make more than 2^64 faces".to_owned() };
     if p.counts.corners >= LARGEST && p.bytes <= budget {
         return format!("would make {} faces, more than 32-bit numbers can connect", grouped(p.counts.faces));
@@ -170,7 +178,7 @@ fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Vec<Step>, RefineError
     }
     let reachable = |level: &u32| predict(mesh, &plan.to(*level)).is_ok_and(|p| fits(&p));
     let highest = (1..plan.level).take_while(reachable).last().unwrap_or(0);
-    Err(RefineError::TooLarge { level: plan.level, predicted, budget, fits: highest })
+    Err(RefineError::TooLarge { level: plan.level, predicted: predicted.map(Box::new), budget, fits: highest })
 }
 
 /// A refinement under way. Drop it to cancel.
@@ -193,7 +201,7 @@ impl Job {
     pub fn new(mesh: Arc<Mesh>, plan: Plan, budget: u64) -> Result<Job, RefineError> {
         let steps = admit(&mesh, &plan, budget)?;
         let mut total = 0;
-        let uv = mesh.uv.as_ref().filter(|_| !steps.iter().any(|s| s.split.stores()));
+        let uv = mesh.uv.as_ref().filter(|_| steps.iter().all(|s| s.split.keeps_corners()));
         let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (uv.map(|u| u.counts), true)];
         for (i, (counts, wide)) in tracks.into_iter().enumerate() {
             let Some(mut c) = counts else { continue };
@@ -284,11 +292,11 @@ impl Job {
             faces: match split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
                 Split::Triangle | Split::Sqrt3 { .. } => Faces::Triangles(self.geometry.corners),
-                Split::Dual { .. } => {
+                Split::Mixed | Split::Dual { .. } => {
                     Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
                 }
             },
-            uv: (self.mesh.uv.is_some() && !self.steps.iter().any(|s| s.split.stores())).then(|| UvValues {
+            uv: (self.mesh.uv.is_some() && self.steps.iter().all(|s| s.split.keeps_corners())).then(|| UvValues {
                 values: self.uv.wide.iter().map(|v| [v[0], v[1]]).collect(),
                 corners: self.uv.corners,
             }),

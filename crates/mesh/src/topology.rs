@@ -101,7 +101,11 @@ pub trait Connectivity {
             !is_boundary(self.twin(h)) && !is_boundary(t) && self.twin(self.prev(t)) == h
         };
         let digons = (0..self.vertices()).filter(is_digon).count() as u64;
+        let is_triangle = |f: u32| self.face_half_edges(f).len() == 3;
+        let sides = (0..self.boundary_half_edges()).filter(|&r| is_triangle(self.face(self.boundary_half_edge(r))));
+        let triangles = [(0..self.faces()).filter(|&f| is_triangle(f)).count() as u64, sides.count() as u64];
         Counts {
+            triangles,
             vertices: self.vertices().into(),
             edges: self.edges().into(),
             faces: self.faces().into(),
@@ -126,6 +130,9 @@ pub struct Counts {
     pub corners: u64,
     /// Half-edges on a boundary.
     pub boundary: u64,
+    /// Triangles, and their half-edges on a boundary: what the mixed split depends on. Not predicted after a dual split,
+    /// where both are 0.
+    pub triangles: [u64; 2],
     /// Boundary vertices of one face, of two, of three, and of more; what dual splits make of a rim depends on them. Those of
     /// three and more may all be counted at three.
     pub rim: [u64; 4],

@@ -129,8 +129,8 @@ impl Track {
             (None, true) => Vec::new(),
             (_, false) => mesh.colors.clone(),
         };
-        let stores = steps.iter().any(|s| s.split.stores());
-        let idle = if uv { plan.level == 0 || mesh.uv.is_none() || stores } else { plan.level == 0 && !plan.closes() };
+        let dropped = steps.iter().any(|s| !s.split.keeps_corners());
+        let idle = if uv { plan.level == 0 || mesh.uv.is_none() || dropped } else { plan.level == 0 && !plan.closes() };
         let mut track = Track {
             uv,
             level: 0,
@@ -238,7 +238,7 @@ impl Track {
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
         let tags = plan.tags(at, self.level, sharp);
         let tags = if self.uv {
-            Tags { rules: Rules { boundary: Boundary::EdgeAndCorner, ..tags.rules }, ..tags }
+            Tags { rules: Rules { boundary: Boundary::EdgeAndCorner, ..tags.rules }, lone: &self.lone, ..tags }
         } else {
             Tags { lone: &self.lone, ..tags }
         };

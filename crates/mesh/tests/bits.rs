@@ -35,6 +35,8 @@ fn hashes_of_refined_models() {
             }
         }
     }
-    // Every model and scheme has a picture of its own (closed models have the same one under both boundary rules).
-    assert!(seen.len() >= SHAPES.len() * SCHEMES.len(), "only {} different results", seen.len());
+    // Every model and scheme has a picture of its own (closed models have the same one under both boundary rules), but for
+    // schemes that are another one on quads or triangles alone, or without knots.
+    let alike = SCHEMES.iter().filter(|e| ["quad-triangle", "nurss"].contains(&e.info.id)).count();
+    assert!(seen.len() >= SHAPES.len() * (SCHEMES.len() - alike), "only {} different results", seen.len());
 }

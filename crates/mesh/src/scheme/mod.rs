@@ -21,6 +21,7 @@ mod linear;
 mod loop_;
 mod modified_butterfly;
 mod params;
+mod quad_triangle;
 mod sqrt3;
 
 pub use butterfly::Butterfly;
@@ -33,6 +34,7 @@ pub use linear::Linear;
 pub use loop_::Loop;
 pub use modified_butterfly::ModifiedButterfly;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
+pub use quad_triangle::QuadTriangle;
 pub use sqrt3::Sqrt3;
 
 pub(crate) use loop_::weight as loop_weight;
@@ -46,6 +48,7 @@ use crate::topology::{Connectivity, is_boundary};
 pub static SCHEMES: &[Entry] = &[
     entry::<CatmullClark>(),
     entry::<Loop>(),
+    quad_triangle::quad_triangle(),
     entry::<Sqrt3>(),
     entry::<JSpline>(),
     entry::<Butterfly>(),
@@ -92,7 +95,7 @@ pub enum Accepts {
     Polygons,
     /// Triangles only; other faces have to be triangulated first.
     Triangles,
-    /// Any polygons; the triangle split where all faces are triangles, else the quad split.
+    /// Any polygons; the triangle split where all faces are triangles, else the quad split (or, of that family, the mixed).
     Both,
 }
 
@@ -101,6 +104,8 @@ pub enum Accepts {
 pub enum Family {
     /// Splits faces: the quad split, or the triangle split.
     Primal,
+    /// Splits triangles in four and other faces in quads.
+    Mixed,
     /// Splits vertices: a face for every face, edge and vertex.
     Dual,
     /// Splits triangles in three and turns their edges.
@@ -113,6 +118,7 @@ impl Info {
         match (self.accepts, shape == FaceShape::Triangles) {
             (Accepts::Triangles, false) => None,
             _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
+            _ if self.family == Family::Mixed && shape == FaceShape::Polygons => Some(Split::Mixed),
             _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
             (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
@@ -273,7 +279,7 @@ const fn entry<S: Scheme>() -> Entry {
 /// where the scheme makes such.
 fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
-        (Level::Base(c), Family::Dual | Family::Sqrt3) => S::rules(*c, split, tags, sink),
+        (Level::Base(c), Family::Mixed | Family::Dual | Family::Sqrt3) => S::rules(*c, split, tags, sink),
         (level, Family::Primal) => S::rules(level, split, tags, sink),
         _ => unreachable!("stored levels come of stored levels"),
     }

@@ -18,6 +18,7 @@
 //!
 //! Ids of vertices are stable prefixes: vertex 17 of level 0 is vertex 17 of every level. Cost: about 3 ns a half-edge.
 
+mod mixed;
 mod quad;
 pub(crate) mod stored;
 mod triangle;
@@ -35,6 +36,8 @@ pub enum Split {
     Quad,
     /// Every triangle becomes four. Takes triangles only.
     Triangle,
+    /// Every triangle becomes four, every other face of n corners n quads. Takes any polygons.
+    Mixed,
     /// A face for every face, inner edge and vertex; the vertices are corners. Takes any polygons.
     Dual {
         /// Whether a boundary vertex of one face has two images.
@@ -64,7 +67,7 @@ impl Split {
         match self {
             Split::Quad => FaceShape::Quads,
             Split::Triangle | Split::Sqrt3 { .. } => FaceShape::Triangles,
-            Split::Dual { .. } => FaceShape::Polygons,
+            Split::Mixed | Split::Dual { .. } => FaceShape::Polygons,
         }
     }
 
@@ -78,7 +81,7 @@ impl Split {
 
     /// Whether levels after this split store their half-edges in full, as level 0 does.
     pub fn stores(self) -> bool {
-        matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. })
+        matches!(self, Split::Mixed | Split::Dual { .. } | Split::Sqrt3 { .. })
     }
 
     /// Whether the vertices of a level are the first of the next.
@@ -86,10 +89,20 @@ impl Split {
         !matches!(self, Split::Dual { .. })
     }
 
-    /// The corners of `c` that have two images, by their half-edges: children from `half_edges()` on. Cost: linear where
-    /// there can be any.
+    /// Whether child faces lie in their parents, so that texture coordinates can follow them.
+    pub fn keeps_corners(self) -> bool {
+        !matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. })
+    }
+
+    /// What only some have a child for: of the dual split the corners of `c` with two images, by their half-edges, children
+    /// from `half_edges()` on; of the mixed split the faces that are no triangles, children from `vertices()` on. Cost:
+    /// linear where there can be any.
     pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
-        if self == (Split::Dual { rounded: true }) { stored::lone_corners(c) } else { Vec::new() }
+        match self {
+            Split::Dual { rounded: true } => stored::lone_corners(c),
+            Split::Mixed => mixed::pointed_faces(c),
+            _ => Vec::new(),
+        }
     }
 
     /// The counts one level further, or none if they do not fit 64 bits.
@@ -102,6 +115,7 @@ impl Split {
                 faces: c.corners,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
+                triangles: [0; 2],
                 rim: [one, two.checked_add(c.boundary)?, three, more],
                 ..c
             },
@@ -111,9 +125,24 @@ impl Split {
                 faces: c.faces.checked_mul(4)?,
                 corners: c.corners.checked_mul(4)?,
                 boundary: c.boundary.checked_mul(2)?,
+                triangles: [c.faces.checked_mul(4)?, c.boundary.checked_mul(2)?],
                 rim: [one, two, three.checked_add(c.boundary)?, more],
                 ..c
             },
+            Split::Mixed => {
+                let [triangles, sides] = c.triangles;
+                let pointed = c.faces.checked_sub(triangles)?;
+                Counts {
+                    vertices: c.vertices.checked_add(c.edges)?.checked_add(pointed)?,
+                    edges: c.edges.checked_mul(2)?.checked_add(c.corners)?,
+                    faces: c.corners.checked_add(triangles)?,
+                    corners: c.corners.checked_mul(4)?,
+                    boundary: c.boundary.checked_mul(2)?,
+                    triangles: [triangles.checked_mul(4)?, sides.checked_mul(2)?],
+                    rim: [one, two.checked_add(c.boundary.checked_sub(sides)?)?, three.checked_add(sides)?, more],
+                    ..c
+                }
+            }
             Split::Dual { rounded } => {
                 let inner = c.edges.checked_sub(c.boundary)?;
                 let extra = if rounded { one } else { 0 };
@@ -133,6 +162,8 @@ impl Split {
                     faces: c.faces.checked_add(inner)?.checked_add(c.vertices)?.checked_sub(bare)?,
                     corners,
                     boundary,
+                    // Not followed: triangles come of vertices too.
+                    triangles: [0; 2],
                     rim: [one.checked_add(extra)?, two.checked_mul(2)?, three.checked_add(more)?.checked_mul(2)?, 0],
                     digons: 0,
                 }
@@ -147,6 +178,7 @@ impl Split {
                     faces: c.corners,
                     corners,
                     boundary,
+                    triangles: [c.corners, boundary],
                     // A boundary vertex gains a face where edges turn and loses it where they are cut, which comes next:
                     // only between the two are three and more told apart.
                     rim: if trisect {
@@ -182,7 +214,7 @@ impl Split {
         c.vertices()
     }
 
-    /// The first of the children born on edges.
+    /// The first of the children born on edges (quad and triangle split).
     #[inline(always)]
     pub fn first_edge_point(self, c: &impl Connectivity) -> u32 {
         match self {
@@ -191,10 +223,11 @@ impl Split {
         }
     }
 
-    /// How many child vertices there are. Cost: constant, but for the dual split with rounded corners.
+    /// How many child vertices there are. Cost: constant, but for the mixed split and the dual one with rounded corners.
     pub fn children(self, c: &impl Connectivity) -> u32 {
         match self {
             Split::Quad | Split::Triangle => self.first_edge_point(c) + c.edges(),
+            Split::Mixed => c.vertices() + self.lone(c).len() as u32 + c.edges(),
             Split::Dual { .. } => c.half_edges() + self.lone(c).len() as u32,
             Split::Sqrt3 { trisect } => c.vertices() + c.faces() + if trisect { c.boundary_half_edges() } else { 0 },
         }
@@ -214,6 +247,7 @@ impl Split {
     pub(crate) fn cut(self, c: &crate::Topology) -> stored::Cut {
         match self {
             Split::Sqrt3 { trisect } => stored::sqrt3(c, trisect),
+            Split::Mixed => mixed::cut(c, &self.lone(c)),
             _ => stored::dual(c, &self.lone(c)),
         }
     }

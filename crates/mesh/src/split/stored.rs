@@ -54,7 +54,7 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    fn with_room(faces: usize, corners: usize, kinds: bool) -> Cut {
+    pub(super) fn with_room(faces: usize, corners: usize, kinds: bool) -> Cut {
         let mut offsets = Vec::with_capacity(faces + 1);
         offsets.push(0);
         let kinds = Vec::with_capacity(if kinds { faces } else { 0 });
@@ -62,7 +62,7 @@ impl Cut {
     }
 
     /// Ends the face whose corners have just been pushed.
-    fn close(&mut self, source: u32, kind: Option<FaceKind>) {
+    pub(super) fn close(&mut self, source: u32, kind: Option<FaceKind>) {
         self.offsets.push(self.corners.len() as u32);
         self.source.push(source);
         self.kinds.extend(kind);
@@ -72,6 +72,7 @@ impl Cut {
     pub fn connect(&self, parent: &Topology, split: super::Split, vertices: u32) -> Topology {
         let mate = match split {
             super::Split::Sqrt3 { trisect } => mates(parent, trisect),
+            super::Split::Mixed => super::mixed::mates(parent),
             _ => {
                 let (mut corners, mut slots) = (self.corners.clone(), Vec::new());
                 connect::connect(&self.offsets, &mut corners, &mut slots, vertices as usize).mate
