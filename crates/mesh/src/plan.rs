@@ -11,6 +11,7 @@
 //! walked, predicted and refused without a mesh being touched. Cost: constant a step.
 
 use crate::fairing::Fairing;
+use crate::limit::LimitRule;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
@@ -159,6 +160,20 @@ impl Plan {
 
     /// Whether something is left to be done with the half-edges of the last level.
     pub(crate) fn closes(&self) -> bool {
-        self.fairing(self.level).is_some()
+        self.fairing(self.level).is_some() || self.projects()
+    }
+
+    /// Whether the last level's points are moved.
+    pub(crate) fn projects(&self) -> bool {
+        self.limit && self.run(self.level).scheme.limit != LimitRule::Itself
+    }
+
+    /// The step that would come after the last: its rules say where the last level's points go in the limit.
+    ///
+    /// # Errors
+    /// [`RefineError::NeedsTriangles`] and [`RefineError::NeedsTrianglesAt`].
+    pub(crate) fn beyond(&self, mesh: &Mesh) -> Result<Option<Step>, RefineError> {
+        let one_more = self.to(self.level.saturating_add(1));
+        one_more.walk(mesh).nth(self.level as usize).transpose()
     }
 }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Half-edges are gone by now; what is asked of a face's past (which face of the file it came from) is arithmetic on its
-//! number. Limit: normals are those of the faces around a vertex, not of the limit surface.
+//! number. Limit: normals are those of the faces around a vertex, unless the plan takes the points to the limit.
 
 use crate::mesh::Mesh;
 use crate::split::{FaceKind, Split};
@@ -90,6 +90,8 @@ pub struct Refined {
     pub parent_ranges: Option<[u32; 2]>,
     /// Vertices below this were the parent level's (all of them at level 0).
     pub vertex_parents: u32,
+    /// Unit normals of the limit surface, where the points are in the limit.
+    pub limit_normals: Option<Vec<[f32; 3]>>,
     /// What each face was made from, after a dual split; else empty.
     pub kinds: Vec<FaceKind>,
     /// The mesh's face behind each face; empty where that is arithmetic.
@@ -125,11 +127,20 @@ impl Refined {
         &self.mesh
     }
 
-    /// Smooth unit normals: the area-weighted sum of the normals of the faces around each vertex (quads by their
+    /// Smooth unit normals: those of the limit where the points are there, else the area-weighted sum of the normals of the faces around each vertex (quads by their
     /// diagonals, polygons by Newell's sum); (0, 0, 0) where that vanishes. Cost: about 10 ns a face.
     pub fn normals(&self) -> Vec<[f32; 3]> {
-        normals(&self.points, &self.faces)
+        self.limit_normals.clone().unwrap_or_else(|| normals(&self.points, &self.faces))
     }
+}
+
+/// Fills in the faces' normals where `limit` has none.
+pub(crate) fn complete(mut limit: Vec<[f32; 3]>, points: &[[f32; 3]], faces: &Faces) -> Vec<[f32; 3]> {
+    if limit.contains(&[0.0; 3]) {
+        let faces = normals(points, faces);
+        limit.iter_mut().zip(faces).filter(|(n, _)| **n == [0.0; 3]).for_each(|(n, face)| *n = face);
+    }
+    limit
 }
 
 fn normals(points: &[[f32; 3]], faces: &Faces) -> Vec<[f32; 3]> {

@@ -4,12 +4,13 @@
 //!   Fair ─> Points ─> Wide ─> HalfEdges ─┐                     at every level but the last
 //!     ^──────────────────────────────────┘
 //!   Fair ─> Points ─> Wide ─> Corners ─> Done                  at the last, which is only shown,
-//!                                └────> HalfEdges ─> Fair      unless something is to be done with it
+//!                                └────> HalfEdges ─> Fair ─> Limit ─> Done    unless something is to be done with it
 //! ```
 //!
 //! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once.
 
 use crate::fairing;
+use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refine::sharp_at;
@@ -110,6 +111,8 @@ pub(crate) struct Track {
     lone: Vec<u32>,
     /// Whether faces list what they came from, because arithmetic does not tell.
     listed: bool,
+    /// If the last level goes to the limit.
+    pub(crate) limit: Option<Projection>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,11 +122,12 @@ pub(crate) enum Stage {
     Wide(Cursor),
     HalfEdges(u32),
     Corners(u32),
+    Limit(u64),
     Done,
 }
 
 impl Track {
-    pub(crate) fn new(mesh: &Mesh, uv: bool, plan: &Plan, steps: &[Step]) -> Track {
+    pub(crate) fn new(mesh: &Mesh, uv: bool, plan: &Plan, steps: &[Step], limit: Option<Step>) -> Track {
         let wide = match (&mesh.uv, uv) {
             (Some(channel), true) => channel.values.iter().map(|v| [v[0], v[1], 0.0, 0.0]).collect(),
             (None, true) => Vec::new(),
@@ -152,6 +156,7 @@ impl Track {
             before: Counts::default(),
             corner: Vec::new(),
             lone: Vec::new(),
+            limit: limit.map(Projection::new),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if !idle {
@@ -172,8 +177,13 @@ impl Track {
             _ if self.uv => Stage::Done,
             _ if plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
             Some(_) => Stage::Points(Cursor::default()),
-            None => Stage::Done,
+            None => self.last_stage(),
         };
+    }
+
+    /// What is left to be done with the last level.
+    fn last_stage(&self) -> Stage {
+        if self.limit.is_some() { Stage::Limit(0) } else { Stage::Done }
     }
 
     fn base<'m>(&self, mesh: &'m Mesh) -> &'m Topology {
@@ -229,8 +239,18 @@ impl Track {
                 (*pass, *cursor) = (*pass + 1, Cursor::default());
                 if *pass == plan.fairing(self.level).map_or(0, |f| f.passes()) {
                     let over = self.level as usize == steps.len();
-                    self.stage = if over { Stage::Done } else { Stage::Points(Cursor::default()) };
+                    self.stage = if over { self.last_stage() } else { Stage::Points(Cursor::default()) };
                 }
+            }
+            return None;
+        }
+        if let (Stage::Limit(at), Some(limit)) = (&mut self.stage, &mut self.limit) {
+            let old = self.points.get_or_insert_with(|| mesh.positions.clone());
+            zeroed(&mut self.new_points, old.len());
+            let tags = plan.tags(limit.step(), self.level, sharp);
+            if limit.work((level, tags), old, &mut self.new_points, at, quota) {
+                std::mem::swap(old, &mut self.new_points);
+                self.stage = Stage::Done;
             }
             return None;
         }
@@ -314,7 +334,7 @@ impl Track {
                     return Some(next);
                 }
             }
-            Stage::Fair(..) | Stage::Done => {}
+            Stage::Fair(..) | Stage::Limit(_) | Stage::Done => {}
         }
         None
     }

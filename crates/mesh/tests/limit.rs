@@ -4,11 +4,11 @@ mod common;
 
 use common::gallery;
 use limn_mesh::limit::{Limit, LimitRule, Projector, limit};
-use limn_mesh::refine::evaluate;
+use limn_mesh::refine::{evaluate, evaluate_limit};
 use limn_mesh::scheme::Tags;
 use limn_mesh::split::Level;
 use limn_mesh::topology::is_boundary;
-use limn_mesh::{Boundary, Connectivity, Mesh, Plan, SCHEMES, Soup, Split, Weld, refine, scheme};
+use limn_mesh::{Boundary, Connectivity, Job, Mesh, Plan, SCHEMES, Soup, Split, Weld, refine, scheme};
 use serde_json::Value;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ fn level_and_limit(mesh: &Mesh, plan: &Plan, level: u32) -> (Vec<[f64; 3]>, Limi
 }
 
 fn limits(mesh: &Mesh, plan: &Plan, positions: &[[f64; 3]], level: u32) -> Limit {
-    on_level(mesh, plan, positions, level, |on, points| limit(plan.scheme, on, points))
+    evaluate_limit(mesh, &plan.to(level), positions).unwrap()
 }
 
 /// Calls `f` with a level, what the scheme needs to refine it, and its points.
@@ -259,4 +259,78 @@ fn refinement_comes_close() {
             }
         }
     }
+}
+
+/// What a job makes of a plan that goes to the limit: the points, colours left as they are, normals, whatever the slices.
+#[test]
+fn jobs_go_to_the_limit() {
+    for (name, mut soup) in gallery().into_iter().filter(|(_, s)| s.face_count() <= 60) {
+        soup.colors = soup.positions.iter().map(|p| [p[0], p[1], p[2], 1.0]).collect();
+        let mesh = Arc::new(Mesh::build(&soup, Weld::Off).unwrap().0);
+        let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        for scheme in SCHEMES {
+            for level in 0..=2 {
+                let plan = Plan { limit: true, ..Plan::new(scheme, Boundary::default(), level) };
+                if plan.split(&mesh).is_err() {
+                    continue;
+                }
+                let what = format!("{name}, {}, level {level}", scheme.info.id);
+                let whole = refine(&mesh, &plan, u64::MAX).unwrap();
+                let mut job = Job::new(mesh.clone(), plan.clone(), u64::MAX).unwrap();
+                while !job.step(97) {
+                    assert!(job.progress() <= 1.0);
+                }
+                let idle = level == 0 && scheme.limit == LimitRule::Itself;
+                assert!(idle || (job.progress() - 1.0).abs() < 1e-6, "{what}: progress ends at {}", job.progress());
+                let sliced = job.finish();
+                assert_eq!(whole.points, sliced.points, "{what}");
+                assert_eq!(whole.limit_normals, sliced.limit_normals, "{what}");
+                assert_eq!(whole.normals(), sliced.normals(), "{what}");
+                let plain = refine(&mesh, &Plan { limit: false, ..plan.clone() }, u64::MAX).unwrap();
+                assert_eq!((&plain.faces, &plain.colors), (&whole.faces, &whole.colors), "{what}");
+
+                let exact = evaluate(&mesh, &plan, &positions, |_| ()).unwrap();
+                let found = evaluate_limit(&mesh, &plan, &positions).unwrap();
+                assert_eq!(exact, found.points, "{what}");
+                let normals = whole.normals();
+                for v in 0..exact.len() {
+                    let d = far(whole.points[v].map(f64::from), exact[v]);
+                    assert!(d < 1e-5, "{what}: vertex {v} is off by {d}");
+                    let length: f32 = normals[v].iter().map(|x| x * x).sum();
+                    assert!((length - 1.0).abs() < 1e-5 || normals[v] == [0.0; 3], "{what}: {:?}", normals[v]);
+                    if let Some(n) = found.normals[v] {
+                        // Points in f32 turn the normals of slivers.
+                        let cos: f64 = (0..3).map(|k| n[k] * f64::from(normals[v][k])).sum();
+                        assert!(cos > 0.999, "{what}: vertex {v}: {n:?} and {:?}", normals[v]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Schemes one after the other, and fairing: the limit is that of the scheme that would come next.
+#[test]
+fn the_scheme_that_comes_next_says_where_the_limit_is() {
+    let mesh = Arc::new(Mesh::build(&(limn_mesh::shape("icosahedron").unwrap().build)(), Weld::Off).unwrap().0);
+    let [to_quad, loops] = ["catmull-clark", "loop"].map(|id| scheme(id).unwrap());
+    let from = |from| limn_mesh::Run { from, scheme: to_quad, params: limn_mesh::Params::default() };
+    let fairings = vec![limn_mesh::Fairing { at: 2, iterations: 3 }];
+    let later = vec![from(2)];
+    let plan = Plan { later, fairings, limit: true, ..Plan::new(loops, Boundary::default(), 2) };
+    let projected = refine(&mesh, &plan, u64::MAX).unwrap();
+    // Refined four times more, it is nearly there.
+    let deep = refine(&mesh, &Plan { limit: false, level: 6, ..plan.clone() }, u64::MAX).unwrap();
+    for (v, p) in projected.points.iter().enumerate() {
+        let d = far(p.map(f64::from), deep.points[v].map(f64::from));
+        assert!(d < 1e-3, "vertex {v} is {d} away");
+    }
+    // Triangles only where they are wanted.
+    let plan = Plan {
+        later: vec![limn_mesh::Run { from: 1, scheme: loops, params: limn_mesh::Params::default() }],
+        level: 1,
+        ..Plan::new(to_quad, Boundary::default(), 1)
+    };
+    assert!(refine(&mesh, &plan, u64::MAX).is_ok());
+    assert!(refine(&mesh, &Plan { limit: true, ..plan }, u64::MAX).is_err());
 }

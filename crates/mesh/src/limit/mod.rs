@@ -32,6 +32,7 @@ mod sqrt3;
 
 use analysis::{Analysis, Setting};
 
+use crate::plan::Step;
 use crate::scheme::{Entry, Tags};
 use crate::split::{Level, Split};
 use crate::topology::Connectivity;
@@ -76,12 +77,11 @@ impl Mask {
         self.point.push((v, 1.0));
     }
 
-    /// The limit point. The sum runs in the order of the mask.
-    pub fn point(&self, at: impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
+    /// The limit point, or that of any other values of the vertices. The sum runs in the order of the mask.
+    pub fn point<const N: usize>(&self, at: impl Fn(u32) -> [f64; N]) -> [f64; N] {
+        let mut sum = [0.0; N];
         for &(v, w) in &self.point {
-            let p = at(v);
-            sum = [sum[0] + w * p[0], sum[1] + w * p[1], sum[2] + w * p[2]];
+            sum.iter_mut().zip(at(v)).for_each(|(s, x)| *s += w * x);
         }
         sum
     }
@@ -243,7 +243,7 @@ impl<'a> Projector<'a> {
         Projector { rule: LimitRule::Analysis, ..Projector::new(scheme, on) }
     }
 
-    /// The mask of vertex `v`. Cost: the valence.
+    /// The mask of vertex `v`. Cost: the valence, or what [`LimitRule::Analysis`] takes.
     pub fn mask(&mut self, v: u32) -> &Mask {
         let (c, tags, mask) = (self.level, self.tags, &mut self.mask);
         mask.clear();
@@ -279,6 +279,60 @@ pub struct Limit {
     pub normals: Vec<Option<[f64; 3]>>,
     /// Two tangents, of the first sector on a crease; zero where there is no tangent plane.
     pub tangents: Vec<[[f64; 3]; 2]>,
+}
+
+/// Points on their way to the limit, in slices.
+#[derive(Debug)]
+pub(crate) struct Projection {
+    /// The step that would come next: its rules are those of the limit.
+    step: Step,
+    analysis: Analysis,
+    /// Unit normals, as far as they are found; zero where there is no tangent plane.
+    pub normals: Vec<[f32; 3]>,
+}
+
+impl Projection {
+    pub fn new(step: Step) -> Projection {
+        Projection { step, analysis: Analysis::new(step.split), normals: Vec::new() }
+    }
+
+    /// The step that would come next.
+    pub fn step(&self) -> &Step {
+        &self.step
+    }
+
+    /// How many rows' time a vertex takes.
+    pub fn cost(scheme: &Entry) -> u32 {
+        if scheme.limit == LimitRule::Analysis { 64 } else { 4 }
+    }
+
+    /// Works off up to `quota` rows of `at ..`, from `old` to `new` points; true when all are done.
+    pub fn work(
+        &mut self,
+        (level, tags): (&Level<'_>, Tags<'_>),
+        old: &[[f32; 3]],
+        new: &mut [[f32; 3]],
+        at: &mut u64,
+        quota: &mut usize,
+    ) -> bool {
+        let cost = u64::from(Projection::cost(self.step.scheme));
+        let all = cost * old.len() as u64;
+        let end = all.min(at.saturating_add(*quota as u64));
+        let (from, to) = (at.div_ceil(cost) as u32, end.div_ceil(cost) as u32);
+        let mut projector = Projector::new(self.step.scheme, (level, self.step.split, tags));
+        std::mem::swap(&mut projector.analysis, &mut self.analysis);
+        self.normals.reserve_exact(old.len() - self.normals.len());
+        let p = |v: u32| old[v as usize].map(f64::from);
+        for v in from..to {
+            let mask = projector.mask(v);
+            new[v as usize] = mask.point(p).map(|x| x as f32);
+            self.normals.push(mask.normal(p).unwrap_or_default().map(|x| x as f32));
+        }
+        std::mem::swap(&mut projector.analysis, &mut self.analysis);
+        *quota -= (end - *at) as usize;
+        *at = end;
+        end == all
+    }
 }
 
 /// Projects all vertices of `level`, at `points`, to the limit of `scheme`. Cost: about 200 ns a vertex.
