@@ -87,8 +87,8 @@ fn info_is_one_json_object_on_standard_output() {
     let folder = Folder::new("info");
     assert_eq!(
         folder.run("builtin:cube level 1 info --json").ok(),
-        "{\"name\":\"cube\",\"source\":\"builtin:cube\",\"scheme\":\"catmull-clark\",\"level\":1,\"vertices\":26,\"edges\":48,\
-         \"faces\":24,\"boundary_loops\":0,\"components\":1,\"genus\":0,\"orientable\":true,\
+        "{\"name\":\"cube\",\"source\":\"builtin:cube\",\"scheme\":\"catmull-clark\",\"level\":1,\"limit\":false,\
+         \"vertices\":26,\"edges\":48,\"faces\":24,\"boundary_loops\":0,\"components\":1,\"genus\":0,\"orientable\":true,\
          \"bounds\":{\"min\":[-1,-1,-1],\"max\":[1,1,1]},\"bytes\":792,\"warnings\":[]}\n"
     );
     // Bounds are those of the level: a Catmull-Clark cube shrinks after the first step, whose face points stay out.

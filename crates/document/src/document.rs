@@ -126,6 +126,7 @@ impl Document {
             | Command::Scale(_)
             | Command::Scheme { .. }
             | Command::Boundary(_)
+            | Command::Limit(_)
             | Command::Level(_) => self.change(command, drag),
         }
     }
@@ -310,6 +311,7 @@ impl Document {
                 settings.scheme = entry;
             }
             Command::Boundary(boundary) => settings.rules.boundary = *boundary,
+            Command::Limit(on) => settings.limit = *on,
             Command::Level(n) => {
                 settings.level = u32::try_from(*n).map_err(|_| CommandError::NegativeLevel(*n))?;
             }

@@ -3,7 +3,7 @@
 //! The JSON form is one object with fixed keys in a fixed order, for other programs:
 //!
 //! ```json
-//! {"name":"cube","source":"builtin:cube","scheme":"catmull-clark","level":1,"vertices":26,"edges":48,"faces":24,
+//! {"name":"cube","source":"builtin:cube","scheme":"catmull-clark","level":1,"limit":false,"vertices":26,"edges":48,"faces":24,
 //!  "boundary_loops":0,"components":1,"genus":0,"orientable":true,
 //!  "bounds":{"min":[-1,-1,-1],"max":[1,1,1]},"bytes":816,"warnings":[]}
 //! ```
@@ -32,6 +32,8 @@ pub struct Info {
     pub scheme: &'static str,
     /// The level.
     pub level: u32,
+    /// Whether its points are in the limit.
+    pub limit: bool,
     /// Counts of that level.
     pub counts: Counts,
     /// Boundary loops, components and genus.
@@ -56,6 +58,7 @@ impl Document {
             source: self.source()?.to_string(),
             scheme: plan.scheme.info.id,
             level: plan.level,
+            limit: plan.limit,
             counts: prediction.counts,
             stats: mesh.stats(),
             bounds: points.and_then(Bounds::of).unwrap_or_else(|| self.bounds()),
@@ -77,7 +80,8 @@ impl Info {
         let Counts { vertices, edges, faces, .. } = self.counts;
         let Stats { boundary_loops, components, genus, .. } = self.stats;
         // Writing to a string cannot fail.
-        let _ = write!(out, ",\"level\":{},\"vertices\":{vertices},\"edges\":{edges},\"faces\":{faces}", self.level);
+        let _ = write!(out, ",\"level\":{},\"limit\":{},\"vertices\":{vertices}", self.level, self.limit);
+        let _ = write!(out, ",\"edges\":{edges},\"faces\":{faces}");
         let _ = write!(out, ",\"boundary_loops\":{boundary_loops},\"components\":{components},\"genus\":");
         match genus {
             Some(genus) => _ = write!(out, "{genus},\"orientable\":true"),
@@ -105,7 +109,7 @@ impl Info {
         let Bounds { min, max, .. } = self.bounds;
         format!(
             "model           {} ({})\n\
-             scheme          {}, level {}\n\
+             scheme          {}, level {}{}\n\
              vertices        {}\n\
              edges           {}\n\
              faces           {}\n\
@@ -118,6 +122,7 @@ impl Info {
             self.source,
             self.scheme,
             self.level,
+            if self.limit { ", in the limit" } else { "" },
             grouped(vertices),
             grouped(edges),
             grouped(faces),

@@ -112,6 +112,7 @@ impl State {
         }));
         commands.push(parameters::command(&self.plan()));
         commands.extend((s.rules.boundary != Boundary::default()).then_some(Command::Boundary(s.rules.boundary)));
+        commands.extend(s.limit.then_some(Command::Limit(true)));
         commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
         commands
     }

@@ -374,16 +374,38 @@ fn info_is_one_object() {
     assert_eq!(
         info.json(),
         format!(
-            "{{\"name\":\"cube\",\"source\":\"builtin:cube\",\"scheme\":\"catmull-clark\",\"level\":1,\"vertices\":26,\
-             \"edges\":48,\"faces\":24,\"boundary_loops\":0,\"components\":1,\"genus\":0,\"orientable\":true,\
+            "{{\"name\":\"cube\",\"source\":\"builtin:cube\",\"scheme\":\"catmull-clark\",\"level\":1,\"limit\":false,\
+             \"vertices\":26,\"edges\":48,\"faces\":24,\"boundary_loops\":0,\"components\":1,\"genus\":0,\"orientable\":true,\
              \"bounds\":{{\"min\":[-1,-1,-1],\"max\":[1,1,1]}},\"bytes\":{bytes},\"warnings\":[]}}"
         )
     );
     assert!(info.text().contains("faces           24\n"));
+    run(&mut d, "limit on");
+    let info = d.info(None).unwrap();
+    assert!(info.json().contains("\"level\":1,\"limit\":true,") && info.text().contains("level 1, in the limit\n"));
     run(&mut d, "open builtin:moebius");
     let json = d.info(None).unwrap().json();
     assert!(json.contains("\"genus\":null,\"orientable\":false") && json.contains("one side only"), "{json}");
     assert_eq!(Document::new(1).info(None), None);
+}
+
+#[test]
+fn the_limit_is_a_setting() {
+    let mut d = document("open builtin:cube level 1");
+    assert_eq!(run(&mut d, "limit on"), Outcome::Refine);
+    assert_eq!(d.text(), "version 1\nopen builtin:cube\nscheme catmull-clark\nlimit on\nlevel 1\n");
+    assert_eq!(d.link(), "#1;open+builtin:cube;scheme+catmull-clark;limit+on;level+1");
+    let plan = d.plan().unwrap();
+    let [there, before] = [plan.clone(), limn_mesh::Plan { limit: false, ..plan }]
+        .map(|p| refine(d.mesh().unwrap(), &p, BUDGET).unwrap());
+    // The cube's corner goes to 5/9 after one step; at the limit to 1/2 (4 and 1 over its faces: Halstead, Kass & DeRose).
+    assert_eq!((before.points[0].map(f32::abs), there.points[0].map(f32::abs)), ([5.0 / 9.0; 3], [0.5; 3]));
+    assert!(there.normals()[0].iter().all(|x| (x.abs() - 1.0 / 3f32.sqrt()).abs() < 1e-6));
+    run(&mut d, "undo");
+    assert!(!d.plan().unwrap().limit);
+    run(&mut d, "redo");
+    run(&mut d, "limit off");
+    assert_eq!(d.link(), "#1;open+builtin:cube;scheme+catmull-clark;level+1");
 }
 
 fn line() -> impl Strategy<Value = String> {
@@ -402,6 +424,8 @@ fn line() -> impl Strategy<Value = String> {
             "weld 0.05",
             "quads on",
             "quads off",
+            "limit on",
+            "limit off",
             "triangulate",
             "center",
             "scale 2",

@@ -3,7 +3,7 @@
 //! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
 
 use limn_document::{Document, ViewSet, parameters};
-use limn_mesh::{Boundary, Domain, Weld};
+use limn_mesh::{Boundary, Domain, LimitRule, Weld};
 use serde::{Serialize, Serializer};
 
 use crate::protocol::{Parameter, ParameterChoice};
@@ -143,6 +143,13 @@ pub static CONTROLS: &[Control] = &[
             choice("edge-only", "Smooth corners", "boundary edge-only"),
         ],
     },
+    switch!(
+        "surface",
+        "limit",
+        "limit ",
+        "Limit surface",
+        "Vertices where endless refinement takes them, and its light"
+    ),
     Control {
         id: "weld",
         tab: "surface",
@@ -214,6 +221,7 @@ pub fn values(document: &Document) -> Values {
             Boundary::EdgeAndCorner => "edge-and-corner",
         };
         values.push(("boundary", rule.to_owned()));
+        values.push(("limit", on(plan.limit)));
     }
     Values(values)
 }
@@ -266,6 +274,9 @@ pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     }
     if !open {
         rows.push("boundary");
+    }
+    if document.plan().is_some_and(|p| p.scheme.limit == LimitRule::Itself) {
+        rows.push("limit");
     }
     let paired = document.reading().is_some_and(|(quads, _)| quads);
     let triangles = model.soup.offsets.windows(2).any(|w| matches!(w, &[a, b] if b - a == 3));
@@ -358,6 +369,8 @@ mod tests {
         assert_eq!(disabled(&document, false), ["textures", "colors", "boundary", "quads"]);
         document.run("open builtin:pawn").unwrap();
         assert_eq!(disabled(&document, true), ["textures", "colors"]);
+        document.run("scheme linear").unwrap();
+        assert_eq!(disabled(&document, true), ["textures", "colors", "limit"]);
     }
 
     #[test]

@@ -58,6 +58,8 @@ pub enum Command {
     },
     /// What happens at the rim.
     Boundary(Boundary),
+    /// Move the level's points to the limit.
+    Limit(bool),
     /// Refine so many times.
     Level(i32),
     /// Change how the model is shown; in order, never empty.
@@ -96,6 +98,7 @@ impl Command {
             Command::Scale(_) => "scale",
             Command::Scheme { .. } => "scheme",
             Command::Boundary(_) => "boundary",
+            Command::Limit(_) => "limit",
             Command::Level(_) => "level",
             Command::View(_) => "view",
             Command::Info { .. } => "info",
@@ -122,7 +125,7 @@ impl fmt::Display for Command {
             Command::Weld(Weld::Exact) => f.write_str(" exact"),
             Command::Weld(Weld::Off) => f.write_str(" off"),
             Command::Weld(Weld::Relative(fraction)) => write!(f, " {fraction}"),
-            Command::Quads(on) => f.write_str(if *on { " on" } else { " off" }),
+            Command::Quads(on) | Command::Limit(on) => f.write_str(if *on { " on" } else { " off" }),
             Command::Scale(Some(s)) => write!(f, " {s}"),
             Command::Scheme { id, parameters } => {
                 write!(f, " {id}")?;

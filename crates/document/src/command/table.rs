@@ -351,6 +351,17 @@ pub static COMMANDS: &[Spec] = &[
         },
     },
     Spec {
+        name: "limit",
+        class: Class::Setting,
+        args: &[arg("SWITCH", SWITCH)],
+        flags: &[],
+        keys: Keys::None,
+        summary: "move the level's vertices to where endless refinement takes them, and shade with that surface's normals",
+        detail: "Faces stay those of the level. Schemes that go through their vertices change the normals only; linear ones nothing.",
+        example: "limit on",
+        build: |p| Some(Command::Limit(is_on(p.values.into_iter().next())?)),
+    },
+    Spec {
         name: "level",
         class: Class::Setting,
         args: &[arg("N", Kind::Whole)],

@@ -145,8 +145,9 @@ impl Engine {
         };
         // The level comes down first: the other settings could not be paid for at the one that was too much.
         let level = format!("level {}", shown.plan.level);
-        for command in [level.clone(), parameters::command(&shown.plan).to_string(), format!("boundary {rule}"), level]
-        {
+        let limit = format!("limit {}", if shown.plan.limit { "on" } else { "off" });
+        let scheme = parameters::command(&shown.plan).to_string();
+        for command in [level.clone(), scheme, format!("boundary {rule}"), limit, level] {
             let _ = self.document.run(&command);
         }
         if !fits(self) {
