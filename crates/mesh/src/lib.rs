@@ -26,6 +26,7 @@
 //! multiply-add, transcendental functions from `libm`, no hash map is iterated.
 
 mod connect;
+mod face_varying;
 pub mod fairing;
 pub mod limit;
 pub mod marks;

@@ -9,12 +9,13 @@
 //!
 //! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once.
 
+use crate::face_varying;
 use crate::fairing;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refine::sharp_at;
-use crate::scheme::{Boundary, Rules, Tags};
+use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Either, Eval, Source};
 use crate::split::{FaceKind, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
@@ -107,6 +108,8 @@ pub(crate) struct Track {
     pub(crate) before: Counts,
     /// Vertices of level 0 that stay, corners among them, where later levels cannot tell.
     corner: Vec<bool>,
+    /// Texture coordinates of `level` that stay.
+    pins: Vec<bool>,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
     /// Whether faces list what they came from, because arithmetic does not tell.
@@ -155,10 +158,14 @@ impl Track {
             },
             before: Counts::default(),
             corner: Vec::new(),
+            pins: Vec::new(),
             lone: Vec::new(),
             limit: limit.map(Projection::new),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
+        if let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
+            track.pins = face_varying::pins(mesh, channel, &plan.rules);
+        }
         if !idle {
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
@@ -172,6 +179,9 @@ impl Track {
     fn begin(&mut self, level: &Level<'_>, plan: &Plan, steps: &[Step]) {
         let step = steps.get(self.level as usize);
         self.lone = step.map_or_else(Vec::new, |s| s.split.lone(level));
+        if self.uv && plan.rules.face_varying == FaceVarying::Boundaries {
+            face_varying::pin_boundary(level, &mut self.pins);
+        }
         self.stage = match step {
             Some(_) if self.uv => Stage::Wide(Cursor::default()),
             _ if self.uv => Stage::Done,
@@ -227,7 +237,7 @@ impl Track {
         steps: &[Step],
         quota: &mut usize,
     ) -> Option<Option<Owned>> {
-        let sharp = if self.uv { &[][..] } else { sharp_at(steps, self.level, mesh, &self.corner) };
+        let sharp = if self.uv { &self.pins } else { sharp_at(steps, self.level, mesh, &self.corner) };
         if let Stage::Fair(pass, cursor) = &mut self.stage {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
@@ -258,7 +268,8 @@ impl Track {
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
         let tags = plan.tags(at, self.level, sharp);
         let tags = if self.uv {
-            Tags { rules: Rules { boundary: Boundary::EdgeAndCorner, ..tags.rules }, lone: &self.lone, ..tags }
+            // Corners are among the pins, and no others.
+            Tags { rules: Rules { boundary: Boundary::EdgeOnly, ..tags.rules }, lone: &self.lone, ..tags }
         } else {
             Tags { lone: &self.lone, ..tags }
         };
@@ -285,7 +296,9 @@ impl Track {
                         });
                         new[child as usize] = sum.map(|x| x as f32);
                     };
-                    done = at.scheme.rows((level, split, tags), &mut take, cursor, quota);
+                    let linear = scheme("linear").filter(|_| self.uv && plan.rules.face_varying == FaceVarying::All);
+                    let scheme = linear.filter(|_| !split.stores()).unwrap_or(at.scheme);
+                    done = scheme.rows((level, split, tags), &mut take, cursor, quota);
                 }
                 if done {
                     self.stage = if last { Stage::Corners(0) } else { Stage::HalfEdges(0) };
