@@ -8,10 +8,10 @@
 //!   level      ── pack_export ─> | arrays, names, pictures |          ── unpack_export, write_obj / write_glb ──> files
 //! ```
 //!
-//! Every item is its length in 32 bits and its bytes, little-endian, padded to four. The layout is private to one build:
-//! it is never stored. Unpacking checks every length and never panics. Cost: one copy each way.
+//! The bytes are [`limn_mesh::pack`]'s, and like there the layout is private to one build: it is never stored. Unpacking
+//! checks every length and never panics. Cost: one copy each way.
 
-use bytemuck::{Pod, pod_collect_to_vec};
+use limn_mesh::pack::{Damaged, Read, Reader, Writer};
 use limn_mesh::{Marks, Soup, Weld};
 
 use crate::{Export, ExportFaces, Image, Material, Model};
@@ -44,11 +44,6 @@ pub struct Parcel {
     pub result: Result<(Model, Vec<Notice>), String>,
 }
 
-/// The buffer is none that this build packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the file's contents were damaged on the way; try again")]
-pub struct Damaged;
-
 impl Parcel {
     /// The parcel as bytes.
     pub fn pack(&self) -> Vec<u8> {
@@ -58,7 +53,7 @@ impl Parcel {
         match &self.result {
             Ok((model, notices)) => {
                 out.number(1);
-                out.model(model);
+                put_model(&mut out, model);
                 out.list(notices, |out, n| {
                     out.text(&n.text);
                     out.number(n.minor.into());
@@ -69,7 +64,7 @@ impl Parcel {
                 out.text(message);
             }
         }
-        out.0
+        out.finish()
     }
 
     /// The parcel that these bytes are.
@@ -77,12 +72,12 @@ impl Parcel {
     /// # Errors
     /// [`Damaged`].
     pub fn unpack(bytes: &[u8]) -> Result<Parcel, Damaged> {
-        let mut from = Reader(bytes);
+        let mut from = Reader::new(bytes);
         let name = from.text()?;
         let [size, hash] = from.exactly::<u64, 2>()?;
         let result = match from.number()? {
             1 => {
-                let model = from.model()?;
+                let model = model(&mut from)?;
                 let notices = from.list(|f| Ok(Notice { text: f.text()?, minor: f.number()? == 1 }))?;
                 Ok((model, notices))
             }
@@ -133,9 +128,9 @@ pub fn pack_export(export: &Export<'_>) -> Vec<u8> {
     out.array(export.face_groups);
     out.list(export.group_names, |out, name| out.text(name));
     out.array(export.face_materials);
-    out.list(export.materials, Writer::material);
-    out.list(export.images, Writer::image);
-    out.0
+    out.list(export.materials, put_material);
+    out.list(export.images, put_image);
+    out.finish()
 }
 
 /// The export that these bytes are.
@@ -143,7 +138,7 @@ pub fn pack_export(export: &Export<'_>) -> Vec<u8> {
 /// # Errors
 /// [`Damaged`].
 pub fn unpack_export(bytes: &[u8]) -> Result<Packed, Damaged> {
-    let mut from = Reader(bytes);
+    let mut from = Reader::new(bytes);
     Ok(Packed {
         name: from.text()?,
         points: from.array()?,
@@ -156,8 +151,8 @@ pub fn unpack_export(bytes: &[u8]) -> Result<Packed, Damaged> {
         face_groups: from.array()?,
         group_names: from.list(Reader::text)?,
         face_materials: from.array()?,
-        materials: from.list(Reader::material)?,
-        images: from.list(Reader::image)?,
+        materials: from.list(material)?,
+        images: from.list(image)?,
     })
 }
 
@@ -184,169 +179,92 @@ impl Packed {
     }
 }
 
-#[derive(Default)]
-struct Writer(Vec<u8>);
-
-impl Writer {
-    fn number(&mut self, n: u32) {
-        self.0.extend_from_slice(&n.to_le_bytes());
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.number(bytes.len() as u32);
-        self.0.extend_from_slice(bytes);
-        self.0.resize(self.0.len().next_multiple_of(4), 0);
-    }
-
-    fn text(&mut self, text: &str) {
-        self.bytes(text.as_bytes());
-    }
-
-    fn array<T: Pod>(&mut self, values: &[T]) {
-        self.bytes(bytemuck::cast_slice(values));
-    }
-
-    fn list<T>(&mut self, items: &[T], mut write: impl FnMut(&mut Self, &T)) {
-        self.number(items.len() as u32);
-        items.iter().for_each(|item| write(self, item));
-    }
-
-    fn material(&mut self, m: &Material) {
-        self.text(&m.name);
-        self.array(&m.base_color);
-        self.number(m.texture.map_or(0, |t| t.wrapping_add(1)));
-        self.number(m.double_sided.into());
-    }
-
-    fn image(&mut self, i: &Image) {
-        self.text(&i.name);
-        self.text(&i.mime);
-        self.bytes(&i.bytes);
-    }
-
-    fn model(&mut self, m: &Model) {
-        self.text(&m.name);
-        let s = &m.soup;
-        self.array(&s.positions);
-        self.array(&s.parts);
-        self.array(&s.offsets);
-        self.array(&s.corners);
-        self.array(&s.uvs);
-        self.array(&s.uv_corners);
-        self.array(&s.colors);
-        self.array(&s.face_groups);
-        self.array(&s.face_materials);
-        let marks = &s.marks;
-        self.list(&marks.creases, |out, (edge, sharpness)| out.array(&[edge[0], edge[1], sharpness.to_bits()]));
-        self.list(&marks.corners, |out, (vertex, sharpness)| out.array(&[*vertex, sharpness.to_bits()]));
-        self.array(&marks.holes);
-        self.list(&marks.knots, |out, (edge, interval)| out.array(&[edge[0], edge[1], interval.to_bits()]));
-        self.list(&m.groups, |out, name| out.text(name));
-        self.list(&m.materials, Self::material);
-        self.list(&m.images, Self::image);
-        self.number(m.triangulated.into());
-        let (kind, fraction) = match m.weld {
-            Weld::Off => (0, 0.0),
-            Weld::Exact => (1, 0.0),
-            Weld::Relative(fraction) => (2, fraction),
-        };
-        self.number(kind);
-        self.number(fraction.to_bits());
-    }
+fn put_material(out: &mut Writer, m: &Material) {
+    out.text(&m.name);
+    out.array(&m.base_color);
+    out.number(m.texture.map_or(0, |t| t.wrapping_add(1)));
+    out.number(m.double_sided.into());
 }
 
-struct Reader<'a>(&'a [u8]);
+fn put_image(out: &mut Writer, i: &Image) {
+    out.text(&i.name);
+    out.text(&i.mime);
+    out.bytes(&i.bytes);
+}
 
-impl<'a> Reader<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Damaged> {
-        let (head, tail) = self.0.split_at_checked(count).ok_or(Damaged)?;
-        self.0 = tail;
-        Ok(head)
-    }
+fn put_model(out: &mut Writer, m: &Model) {
+    out.text(&m.name);
+    let s = &m.soup;
+    out.array(&s.positions);
+    out.array(&s.parts);
+    out.array(&s.offsets);
+    out.array(&s.corners);
+    out.array(&s.uvs);
+    out.array(&s.uv_corners);
+    out.array(&s.colors);
+    out.array(&s.face_groups);
+    out.array(&s.face_materials);
+    let marks = &s.marks;
+    out.list(&marks.creases, |out, (edge, sharpness)| out.array(&[edge[0], edge[1], sharpness.to_bits()]));
+    out.list(&marks.corners, |out, (vertex, sharpness)| out.array(&[*vertex, sharpness.to_bits()]));
+    out.array(&marks.holes);
+    out.list(&marks.knots, |out, (edge, interval)| out.array(&[edge[0], edge[1], interval.to_bits()]));
+    out.list(&m.groups, |out, name| out.text(name));
+    out.list(&m.materials, put_material);
+    out.list(&m.images, put_image);
+    out.number(m.triangulated.into());
+    let (kind, fraction) = match m.weld {
+        Weld::Off => (0, 0.0),
+        Weld::Exact => (1, 0.0),
+        Weld::Relative(fraction) => (2, fraction),
+    };
+    out.number(kind);
+    out.number(fraction.to_bits());
+}
 
-    fn number(&mut self) -> Result<u32, Damaged> {
-        Ok(u32::from_le_bytes(self.take(4)?.try_into().map_err(|_| Damaged)?))
-    }
+fn material(from: &mut Reader<'_>) -> Read<Material> {
+    Ok(Material {
+        name: from.text()?,
+        base_color: from.exactly()?,
+        texture: from.number()?.checked_sub(1),
+        double_sided: from.number()? == 1,
+    })
+}
 
-    fn bytes(&mut self) -> Result<&'a [u8], Damaged> {
-        let count = self.number()? as usize;
-        let bytes = self.take(count)?;
-        self.take(count.next_multiple_of(4) - count)?;
-        Ok(bytes)
-    }
+fn image(from: &mut Reader<'_>) -> Read<Image> {
+    Ok(Image { name: from.text()?, mime: from.text()?, bytes: from.bytes()?.to_vec() })
+}
 
-    fn text(&mut self) -> Result<String, Damaged> {
-        String::from_utf8(self.bytes()?.to_vec()).map_err(|_| Damaged)
-    }
-
-    fn array<T: Pod>(&mut self) -> Result<Vec<T>, Damaged> {
-        let bytes = self.bytes()?;
-        if bytes.len().checked_rem(size_of::<T>()) != Some(0) {
-            return Err(Damaged);
-        }
-        Ok(pod_collect_to_vec(bytes))
-    }
-
-    fn exactly<T: Pod, const N: usize>(&mut self) -> Result<[T; N], Damaged> {
-        self.array()?.try_into().map_err(|_| Damaged)
-    }
-
-    fn list<T>(&mut self, mut read: impl FnMut(&mut Self) -> Result<T, Damaged>) -> Result<Vec<T>, Damaged> {
-        // No room is made in advance: a damaged count must not cost memory.
-        (0..self.number()?).map(|_| read(self)).collect()
-    }
-
-    /// A flag, then the value, which is there either way.
-    fn option<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Damaged>) -> Result<Option<T>, Damaged> {
-        let is_there = self.number()? == 1;
-        let value = read(self)?;
-        Ok(is_there.then_some(value))
-    }
-
-    fn material(&mut self) -> Result<Material, Damaged> {
-        Ok(Material {
-            name: self.text()?,
-            base_color: self.exactly()?,
-            texture: self.number()?.checked_sub(1),
-            double_sided: self.number()? == 1,
-        })
-    }
-
-    fn image(&mut self) -> Result<Image, Damaged> {
-        Ok(Image { name: self.text()?, mime: self.text()?, bytes: self.bytes()?.to_vec() })
-    }
-
-    fn model(&mut self) -> Result<Model, Damaged> {
-        Ok(Model {
-            name: self.text()?,
-            soup: Soup {
-                positions: self.array()?,
-                parts: self.array()?,
-                offsets: self.array()?,
-                corners: self.array()?,
-                uvs: self.array()?,
-                uv_corners: self.array()?,
-                colors: self.array()?,
-                face_groups: self.array()?,
-                face_materials: self.array()?,
-                marks: Marks {
-                    creases: self.list(|f| f.exactly().map(|[a, b, s]| ([a, b], f32::from_bits(s))))?,
-                    corners: self.list(|f| f.exactly().map(|[v, s]| (v, f32::from_bits(s))))?,
-                    holes: self.array()?,
-                    knots: self.list(|f| f.exactly().map(|[a, b, d]| ([a, b], f32::from_bits(d))))?,
-                },
+fn model(from: &mut Reader<'_>) -> Read<Model> {
+    Ok(Model {
+        name: from.text()?,
+        soup: Soup {
+            positions: from.array()?,
+            parts: from.array()?,
+            offsets: from.array()?,
+            corners: from.array()?,
+            uvs: from.array()?,
+            uv_corners: from.array()?,
+            colors: from.array()?,
+            face_groups: from.array()?,
+            face_materials: from.array()?,
+            marks: Marks {
+                creases: from.list(|f| f.exactly().map(|[a, b, s]| ([a, b], f32::from_bits(s))))?,
+                corners: from.list(|f| f.exactly().map(|[v, s]| (v, f32::from_bits(s))))?,
+                holes: from.array()?,
+                knots: from.list(|f| f.exactly().map(|[a, b, d]| ([a, b], f32::from_bits(d))))?,
             },
-            groups: self.list(Self::text)?,
-            materials: self.list(Self::material)?,
-            images: self.list(Self::image)?,
-            triangulated: self.number()? == 1,
-            weld: match (self.number()?, f32::from_bits(self.number()?)) {
-                (0, _) => Weld::Off,
-                (1, _) => Weld::Exact,
-                (_, fraction) => Weld::Relative(fraction),
-            },
-        })
-    }
+        },
+        groups: from.list(Reader::text)?,
+        materials: from.list(material)?,
+        images: from.list(image)?,
+        triangulated: from.number()? == 1,
+        weld: match (from.number()?, f32::from_bits(from.number()?)) {
+            (0, _) => Weld::Off,
+            (1, _) => Weld::Exact,
+            (_, fraction) => Weld::Relative(fraction),
+        },
+    })
 }
 
 #[cfg(test)]

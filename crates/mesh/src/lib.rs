@@ -32,6 +32,7 @@ pub mod limit;
 pub mod marks;
 pub mod mesh;
 pub mod order;
+pub mod pack;
 pub mod pair;
 pub mod plan;
 pub mod refine;
