@@ -47,6 +47,11 @@ pub mod topology;
 mod track;
 pub mod triangulate;
 mod weld;
+mod wire;
+
+/// Whether this build has everything: the feature `full`. What stands behind it is not compiled into the page's first module,
+/// and [`Plan::is_here`] says which plans need it.
+pub(crate) const FULL: bool = cfg!(feature = "full");
 
 pub use fairing::Fairing;
 pub use limit::{Limit, LimitRule, limit};

@@ -48,8 +48,8 @@ pub struct Mesh {
     pub weld_class: Vec<u32>,
     /// Whether some part has one side only (it was cut to be oriented).
     pub one_sided: bool,
-    counts: Counts,
-    shape: FaceShape,
+    pub(crate) counts: Counts,
+    pub(crate) shape: FaceShape,
 }
 
 /// Texture coordinates as a second vertex array on the same half-edges: where two faces disagree about an edge, the twin

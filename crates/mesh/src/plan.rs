@@ -10,6 +10,7 @@
 //! A step's split follows from its scheme and from the shape of the faces that are there ([`crate::FaceShape`]), so a plan can be
 //! walked, predicted and refused without a mesh being touched. Cost: constant a step.
 
+use crate::FULL;
 use crate::fairing::Fairing;
 use crate::limit::LimitRule;
 use crate::mesh::Mesh;
@@ -83,6 +84,20 @@ impl Plan {
     /// The same to another level.
     pub fn to(&self, level: u32) -> Plan {
         Plan { level, ..self.clone() }
+    }
+
+    /// Whether this build can make the plan on `mesh`: with the feature `full` every plan, without it common ones.
+    pub fn is_here(&self, mesh: &Mesh) -> bool {
+        FULL || self.is_common(mesh)
+    }
+
+    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, or the mesh
+    /// itself. A build without the feature `full` has the code for these; the one place to say so of something new.
+    pub fn is_common(&self, mesh: &Mesh) -> bool {
+        let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.limit;
+        let plain = self.scheme.common && self.later.is_empty();
+        let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
+        closed && (self.level == 0 || (plain && smooth))
     }
 
     /// The run that makes step `step`.

@@ -75,6 +75,12 @@ pub enum RefineError {
         /// The level.
         level: u32,
     },
+    /// The plan needs rules that this build has not: [`Plan::is_here`].
+    #[error("{scheme} needs a part of Limn that is not loaded; choose it again")]
+    Elsewhere {
+        /// The scheme's name.
+        scheme: &'static str,
+    },
 }
 
 fn too_large(p: Option<&Prediction>, budget: u64) -> String {
@@ -176,6 +182,9 @@ fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Vec<Step>, RefineError
     let fits = |p: &Option<Prediction>| p.is_some_and(|p| p.bytes <= budget && p.counts.corners < LARGEST);
     let predicted = predict(mesh, plan)?;
     if plan.level == 0 || fits(&predicted) {
+        if !plan.is_here(mesh) {
+            return Err(RefineError::Elsewhere { scheme: plan.scheme.info.name });
+        }
         return plan.walk(mesh).collect();
     }
     let reachable = |level: &u32| predict(mesh, &plan.to(*level)).is_ok_and(|p| fits(&p));

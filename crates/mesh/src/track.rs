@@ -7,8 +7,10 @@
 //!                                └────> HalfEdges ─> Fair ─> Limit ─> Done    unless something is to be done with it
 //! ```
 //!
-//! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once.
+//! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once. What
+//! [`Plan::is_here`] leaves to builds with everything stands behind `FULL` here.
 
+use crate::FULL;
 use crate::face_varying;
 use crate::fairing;
 use crate::limit::Projection;
@@ -34,7 +36,7 @@ impl Owned {
         match (split, parent) {
             (Split::Quad, _) => Owned::Quads(QuadLevel::below(parent)),
             (Split::Triangle, _) => Owned::Triangles(TriangleLevel::below(parent)),
-            (_, Level::Base(t)) => Owned::Stored(split.cut(t).connect(t, split, split.children(*t))),
+            (_, Level::Base(t)) if FULL => Owned::Stored(split.cut(t).connect(t, split, split.children(*t))),
             _ => unreachable!("stored levels come of stored levels"),
         }
     }
@@ -50,6 +52,7 @@ impl Owned {
     /// The same level as the next step wants it held.
     pub(crate) fn stored_for(self, next: Option<&Step>) -> Owned {
         match self {
+            implicit if !FULL => implicit,
             Owned::Stored(t) => Owned::Stored(t),
             Owned::Quads(q) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&q)),
             Owned::Triangles(t) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&t)),
@@ -185,7 +188,7 @@ impl Track {
         self.stage = match step {
             Some(_) if self.uv => Stage::Wide(Cursor::default()),
             _ if self.uv => Stage::Done,
-            _ if plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
+            _ if FULL && plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
             Some(_) => Stage::Points(Cursor::default()),
             None => self.last_stage(),
         };
@@ -238,7 +241,7 @@ impl Track {
         quota: &mut usize,
     ) -> Option<Option<Owned>> {
         let sharp = if self.uv { &self.pins } else { sharp_at(steps, self.level, mesh, &self.corner) };
-        if let Stage::Fair(pass, cursor) = &mut self.stage {
+        if FULL && let Stage::Fair(pass, cursor) = &mut self.stage {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let tags = Tags { sharp, ..Tags::new(plan.rules, Default::default()) };
@@ -304,7 +307,7 @@ impl Track {
                     self.stage = if last { Stage::Corners(0) } else { Stage::HalfEdges(0) };
                 }
             }
-            Stage::Corners(_) if split.stores() => {
+            Stage::Corners(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
                 let cut = split.cut(t);
                 let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32)));
@@ -330,7 +333,7 @@ impl Track {
                     return Some(None);
                 }
             }
-            Stage::HalfEdges(_) if split.stores() => {
+            Stage::HalfEdges(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
                 let cut = split.cut(t);
                 let stored = cut.connect(t, split, children as u32);
@@ -354,7 +357,7 @@ impl Track {
 
     /// Lists what the faces of the next level came from, if that is wanted, of a split that does not say so itself.
     fn list(&mut self, level: &Level<'_>, split: Split) {
-        if self.listed && !self.uv {
+        if FULL && self.listed && !self.uv {
             let mut parents = Vec::new();
             split.parents(level, &mut parents);
             self.source = descend(&self.source, parents);

@@ -226,7 +226,8 @@ impl Tags<'_> {
 pub trait Scheme: 'static {
     /// Its entry in the registry.
     const INFO: Info;
-    /// Whether it is chosen often enough to be compiled for every connectivity and sink: twice the code.
+    /// Whether it is chosen often enough to be compiled for every connectivity and sink, twice the code, and into builds
+    /// without the feature `full`.
     const COMMON: bool = false;
 
     /// How the limit of its vertices is found.
@@ -246,6 +247,8 @@ pub struct Entry {
     pub info: Info,
     /// How the limit of its vertices is found.
     pub limit: LimitRule,
+    /// [`Scheme::COMMON`].
+    pub common: bool,
     eval: EvalFn,
     record: RecordFn,
 }
@@ -256,22 +259,32 @@ impl PartialEq for Entry {
     }
 }
 
-/// Compiles a scheme into an entry: for every connectivity that it can meet, at full speed, and once for recording.
+/// Compiles a scheme into an entry: for every connectivity that it can meet, at full speed, and once for recording. A build
+/// without the feature `full` has no rules of rare schemes: nothing refers to them, so nothing is compiled.
 const fn entry<S: Scheme>() -> Entry {
-    Entry {
-        info: S::INFO,
-        limit: S::LIMIT,
-        eval: |level, split, tags, sink| match (level, S::INFO.accepts) {
-            (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
-            (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
-            (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
-            _ if S::COMMON => unreachable!("a scheme's own split made the level"),
-            _ => seldom::<S>(level, split, tags, &mut Either::Eval(sink)),
-        },
-        record: |level, split, tags, sink| match S::COMMON {
-            true => S::rules(level, split, tags, sink),
-            false => seldom::<S>(level, split, tags, &mut Either::Record(sink)),
-        },
+    let (eval, record): (EvalFn, RecordFn) = if S::COMMON || crate::FULL {
+        (eval::<S>, record::<S>)
+    } else {
+        // `Plan::is_here` says no, and whoever refines asks it first.
+        (|_, _, _, _| (), |_, _, _, _| ())
+    };
+    Entry { info: S::INFO, common: S::COMMON, limit: S::LIMIT, eval, record }
+}
+
+fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {
+    match (level, S::INFO.accepts) {
+        (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
+        (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
+        (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
+        _ if S::COMMON => unreachable!("a scheme's own split made the level"),
+        _ => seldom::<S>(level, split, tags, &mut Either::Eval(sink)),
+    }
+}
+
+fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Record<'_>) {
+    match S::COMMON {
+        true => S::rules(level, split, tags, sink),
+        false => seldom::<S>(level, split, tags, &mut Either::Record(sink)),
     }
 }
 

@@ -39,6 +39,7 @@ const MIXED: Entry = entry::<QuadTriangle>();
 pub(super) const fn quad_triangle() -> Entry {
     Entry {
         info: QuadTriangle::INFO,
+        common: QuadTriangle::COMMON,
         limit: QuadTriangle::LIMIT,
         eval: |level, split, tags, sink| match split {
             Split::Quad => (QUADS.eval)(level, split, tags, sink),

@@ -99,6 +99,7 @@ impl Split {
     /// linear where there can be any.
     pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
         match self {
+            _ if !crate::FULL => Vec::new(),
             Split::Dual { rounded: true } => stored::lone_corners(c),
             Split::Mixed => mixed::pointed_faces(c),
             _ => Vec::new(),
@@ -246,6 +247,7 @@ impl Split {
     /// The faces of the next level, for splits that store it. `c` is a stored level.
     pub(crate) fn cut(self, c: &crate::Topology) -> stored::Cut {
         match self {
+            _ if !crate::FULL => unreachable!("no scheme of this build stores levels"),
             Split::Sqrt3 { trisect } => stored::sqrt3(c, trisect),
             Split::Mixed => mixed::cut(c, &self.lone(c)),
             _ => stored::dual(c, &self.lone(c)),
