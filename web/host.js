@@ -1,6 +1,6 @@
 // @ts-check
-// The engine's surroundings: loads the one of the two modules that this browser can draw with, hands it the page's messages,
-// and gives it its turns. Long work comes in slices of a few milliseconds; between two of them the thread takes messages, so
+// The engine's surroundings: loads the one of the two engines that this browser can draw with, and the kernel with every
+// scheme when one is chosen that the engine has no rules of; hands over the page's messages, and gives the engine its turns. Long work comes in slices of a few milliseconds; between two of them the thread takes messages, so
 // input, Cancel and drawing go on. Runs in a worker, or on the page where workers cannot draw.
 
 /** @typedef {import("./protocol.js").ToEngine} ToEngine */
@@ -15,6 +15,8 @@
 const SLICE = 8;
 /** Files smaller than this are read before anybody could wonder, in bytes. */
 const TALKED_ABOUT = 3_000_000;
+/** Loading that takes less is not talked about, in milliseconds. */
+const QUIET = 200;
 
 /**
  * @param {(message: FromEngine, transfer?: Transferable[]) => void} post
@@ -33,6 +35,9 @@ export function createHost(post) {
   let asked = 0;
   /** @type {Promise<Errands> | null} */
   let errands = null;
+  /** Whether the kernel is being loaded, and how often that was tried. */
+  let loading = false;
+  let tries = 0;
   const turns = new MessageChannel();
 
   /** @param {unknown} error */
@@ -55,6 +60,7 @@ export function createHost(post) {
 
   const next = () => {
     if (dead || !engine) return;
+    if (!loading && engine.wants_kernel()) void kernel();
     if (!working && engine.has_work()) {
       working = true;
       turns.port2.postMessage(0);
@@ -72,6 +78,33 @@ export function createHost(post) {
       });
     }
   };
+  /** Loads the module with every scheme into this thread. */
+  const kernel = async () => {
+    loading = true;
+    let what = "";
+    const tell = () => post({ type: "progress", what, done: -1, cancel: true });
+    const slow = setTimeout(() => {
+      if (!engine?.wants_kernel()) return;
+      what = "Loading the scheme";
+      tell();
+    }, QUIET);
+    /** @type {import("./protocol.js").Kernel | undefined} */
+    let made;
+    try {
+      // Another address each time: a browser may keep what failed, and a module that ran out of memory is of no more use.
+      const { Kernel } = await load("kernel", tries ? `?${tries}` : "");
+      made = new Kernel();
+    } catch {}
+    tries += 1;
+    loading = false;
+    clearTimeout(slow);
+    if (what) {
+      what = "";
+      tell();
+    }
+    enter((e) => e.take_kernel(made));
+  };
+
   turns.port1.onmessage = () => {
     working = false;
     enter((e) => e.work(SLICE));
@@ -122,11 +155,7 @@ export function createHost(post) {
     const renderer = start.renderer ?? (await probe());
     const folder = renderer === "webgpu" ? "webgpu" : "webgl";
     try {
-      const base = new URL(`../pkg/${folder}/`, import.meta.url);
-      const wasm = fetch(new URL("limn_engine_bg.wasm", base));
-      /** @type {import("./protocol.js").EngineModule} */
-      const module = await import(new URL("limn_engine.js", base).href);
-      await module.default({ module_or_path: wasm });
+      const module = await load(folder);
       const { width, height, scale, insets } = start.size;
       const memory = Reflect.get(navigator, "deviceMemory") ?? 8;
       engine = await module.Engine.create(canvas, renderer, width, height, scale, insets, start.theme, start.calm, memory, emit);
@@ -201,7 +230,19 @@ export function createHost(post) {
   return deliver;
 }
 
-/** Which of the two modules this browser can draw with. @returns {Promise<Renderer>} */
+/**
+ * Loads a wasm module and its glue.
+ * @param {string} id the folder under pkg/ @param {string} [again] makes the address another one
+ * @returns {Promise<import("./protocol.js").WasmModule>}
+ */
+async function load(id, again = "") {
+  const base = new URL(`../pkg/${id}/limn_${id === "kernel" ? id : "engine"}`, import.meta.url).href;
+  const [module, wasm] = await Promise.all([import(`${base}.js${again}`), fetch(`${base}_bg.wasm`)]);
+  await module.default({ module_or_path: wasm });
+  return module;
+}
+
+/** Which of the two engines this browser can draw with. @returns {Promise<Renderer>} */
 async function probe() {
   try {
     return (await navigator.gpu?.requestAdapter()) ? "webgpu" : "webgl2";

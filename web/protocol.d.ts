@@ -212,9 +212,9 @@ export interface Card {
   ask: string;
 }
 
-/** The wasm module, one of two, as wasm-bindgen makes it. */
-export interface EngineModule {
-  default(source: { module_or_path: Promise<Response> }): Promise<unknown>;
+/** A wasm module as wasm-bindgen makes it: one of the two engines, or the kernel with every scheme. */
+export interface WasmModule {
+  default(source: { module_or_path: Response }): Promise<unknown>;
   Engine: {
     create(
       canvas: OffscreenCanvas | HTMLCanvasElement,
@@ -229,7 +229,11 @@ export interface EngineModule {
       emit: (message: never) => void,
     ): Promise<Engine>;
   };
+  Kernel: new () => Kernel;
 }
+
+/** Refines by every scheme; only the engine calls it: crates/kernel/src/lib.rs. */
+export type Kernel = object;
 
 /** The engine's calls: crates/engine/src/engine/mod.rs says what each does. */
 export interface Engine {
@@ -244,6 +248,8 @@ export interface Engine {
   cancel(): void;
   has_work(): boolean;
   work(milliseconds: number): void;
+  wants_kernel(): boolean;
+  take_kernel(kernel: Kernel | undefined): void;
   wants_frame(): boolean;
   frame(): boolean;
   fetched(url: string, turn: number, parcel: Uint8Array | undefined, error: string): void;

@@ -28,6 +28,8 @@ pub mod shorthand;
 #[cfg(target_arch = "wasm32")]
 pub mod engine;
 #[cfg(target_arch = "wasm32")]
+mod kernel;
+#[cfg(target_arch = "wasm32")]
 mod post;
 
 #[cfg(target_arch = "wasm32")]

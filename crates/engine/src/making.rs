@@ -4,6 +4,8 @@
 //!   Making ── step ──► Refine (points, faces) ── step ──► Build (normals, buffers) ──► Made
 //! ```
 //!
+//! Who refines is a [`Work`]: a job of this module, or a run of the one with every scheme.
+//!
 //! Nothing of what is shown changes until a step gives [`Made`]; dropping a [`Making`] is all that cancelling takes. Flat
 //! shading of small models takes the corner layout, which has one normal a polygon: that changes buffers only, so
 //! [`Making::again`] starts from the points that are there.
@@ -11,7 +13,7 @@
 use std::sync::Arc;
 
 use limn_document::Document;
-use limn_mesh::{Job, Mesh, NONE, Plan, RefineError, Refined, order, triangulate};
+use limn_mesh::{Job, Mesh, NONE, Plan, Refined, order, triangulate};
 use limn_render::{Error, Part, Renderer, Surface, SurfaceData, Upload};
 
 /// Rows of refinement, or elements of an upload, between two looks at the clock: about half a millisecond.
@@ -115,8 +117,38 @@ impl Made {
     }
 }
 
+/// Refining under way, here or in another module.
+pub trait Work {
+    /// Works off about `rows` rows and says whether all is done.
+    ///
+    /// # Errors
+    /// One sentence, if the other module failed.
+    fn step(&mut self, rows: usize) -> Result<bool, String>;
+    /// How much is done, 0 to 1.
+    fn progress(&self) -> f32;
+    /// The level, once all is done.
+    ///
+    /// # Errors
+    /// One sentence, if the other module failed.
+    fn finish(self: Box<Self>) -> Result<Refined, String>;
+}
+
+impl Work for Job {
+    fn step(&mut self, rows: usize) -> Result<bool, String> {
+        Ok(Job::step(self, rows))
+    }
+
+    fn progress(&self) -> f32 {
+        Job::progress(self)
+    }
+
+    fn finish(self: Box<Self>) -> Result<Refined, String> {
+        Ok(Job::finish(*self))
+    }
+}
+
 enum Stage {
-    Refine(Box<Job>),
+    Refine(Box<dyn Work>),
     Build(Made, Option<Box<Upload>>),
     Over,
 }
@@ -142,19 +174,9 @@ pub enum Step {
 }
 
 impl Making {
-    /// Begins with refining.
-    ///
-    /// # Errors
-    /// When the level does not fit the budget.
-    pub fn refine(
-        mesh: Arc<Mesh>,
-        plan: Plan,
-        corners: bool,
-        parts: Arc<Parts>,
-        budget: u64,
-    ) -> Result<Making, RefineError> {
-        let job = Job::new(mesh.clone(), plan.clone(), budget)?;
-        Ok(Making { mesh, plan, corners, parts, stage: Stage::Refine(Box::new(job)), spent: [0.0; 2] })
+    /// Begins with refining: `work` makes `plan` of `mesh`.
+    pub fn refine(work: Box<dyn Work>, mesh: Arc<Mesh>, plan: Plan, corners: bool, parts: Arc<Parts>) -> Making {
+        Making { mesh, plan, corners, parts, stage: Stage::Refine(work), spent: [0.0; 2] }
     }
 
     /// Begins with the points of `made`, for the other layout.
@@ -188,7 +210,7 @@ impl Making {
     /// The share that is done, 0..=1; two thirds are for refining.
     pub fn progress(&self) -> f32 {
         match &self.stage {
-            Stage::Refine(job) => job.progress() * 0.66,
+            Stage::Refine(work) => work.progress() * 0.66,
             Stage::Build(_, None) => 0.66,
             Stage::Build(made, Some(upload)) => 0.7 + 0.3 * made.data(|data| upload.progress(data)),
             Stage::Over => 1.0,
@@ -198,14 +220,14 @@ impl Making {
     /// Works until `deadline` (milliseconds on `clock`) or the end. One thing cannot be cut: the normals, about 10 ns a face.
     ///
     /// # Errors
-    /// What the renderer says about the buffers.
-    pub fn step(&mut self, renderer: &Renderer, clock: impl Fn() -> f64, deadline: f64) -> Result<Step, Error> {
+    /// What the renderer says about the buffers, or the other module about refining: one sentence.
+    pub fn step(&mut self, renderer: &Renderer, clock: impl Fn() -> f64, deadline: f64) -> Result<Step, String> {
         let start = clock();
         let stage = std::mem::replace(&mut self.stage, Stage::Over);
         let (next, kind) = match stage {
-            Stage::Refine(mut job) => {
+            Stage::Refine(mut work) => {
                 let done = loop {
-                    if job.step(ROWS) {
+                    if work.step(ROWS)? {
                         break true;
                     }
                     if clock() >= deadline {
@@ -213,7 +235,7 @@ impl Making {
                     }
                 };
                 let next = if done {
-                    let refined = Arc::new(job.finish());
+                    let refined = Arc::new(work.finish()?);
                     let made = Made {
                         refined,
                         plan: self.plan.clone(),
@@ -223,7 +245,7 @@ impl Making {
                     };
                     Stage::Build(made, None)
                 } else {
-                    Stage::Refine(job)
+                    Stage::Refine(work)
                 };
                 (next, 0)
             }
@@ -231,7 +253,7 @@ impl Making {
                 if made.normals.is_empty() {
                     made.normals = Arc::new(made.refined.normals());
                 }
-                let upload = made.data(|data| renderer.upload(data))?;
+                let upload = made.data(|data| renderer.upload(data)).map_err(|e| e.to_string())?;
                 (Stage::Build(made, Some(Box::new(upload))), 1)
             }
             Stage::Build(made, Some(mut upload)) => {
@@ -244,7 +266,8 @@ impl Making {
                             return Ok(false);
                         }
                     }
-                })?;
+                });
+                let done = done.map_err(|e: Error| e.to_string())?;
                 // Hands over what was written: left to pile up, it would hold up the next frame for seconds.
                 renderer.gpu().queue.submit(std::iter::empty());
                 if done {

@@ -1,6 +1,6 @@
 //! `cargo xtask dist`: the folder that ships.
 //!
-//! `dist/` holds the page as any static host serves it: `index.html`, `web/` and `pkg/` with both modules. The sizes
+//! `dist/` holds the page as any static host serves it: `index.html`, `web/` and `pkg/` with the wasm modules. The sizes
 //! are printed raw and as brotli at its highest level, which is what good hosts send.
 
 use crate::arguments::Arguments;
@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Builds both modules as they ship and fills `dist/`.
+/// Builds the modules as they ship and fills `dist/`.
 pub fn run(arguments: Arguments) -> Result<()> {
     arguments.finish()?;
     let dist = paths::dist();
@@ -21,7 +21,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     report(&dist)
 }
 
-/// Builds both modules and fills `site` with them and the page.
+/// Builds the modules and fills `site` with them and the page.
 pub fn build(profile: Profile, site: &Path) -> Result<()> {
     for module in Module::ALL {
         wasm::build(module, profile)?;
@@ -29,7 +29,7 @@ pub fn build(profile: Profile, site: &Path) -> Result<()> {
     assemble(profile, site)
 }
 
-/// Copies the page and the two built modules into a fresh folder, which takes the old one's place when it is whole.
+/// Copies the page and the built modules into a fresh folder, which takes the old one's place when it is whole.
 pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
     let fresh = paths::root().join("target/site.new");
     remove(&fresh)?;
@@ -106,7 +106,7 @@ pub fn report(dist: &Path) -> Result<()> {
         sums[place].1 += small;
     }
     let page = sums[Module::ALL.len()];
-    for (at, module) in Module::ALL.into_iter().enumerate().filter(|(_, module)| *module != Module::Files) {
+    for (at, module) in Module::ALL.into_iter().enumerate().filter(|(_, module)| module.is_engine()) {
         let (raw, small) = (sums[at].0 + page.0, sums[at].1 + page.1);
         println!("{raw:>12} {small:>12}  everything for {}", module.id());
     }

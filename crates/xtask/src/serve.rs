@@ -5,6 +5,7 @@
 //! /web/...          modules, styles   from the working tree, as they are now
 //! /pkg/webgpu/...   glue and wasm     built before the page gets them, when a source is newer
 //! /pkg/files/...    the file formats  the same; built behind the first page
+//! /pkg/kernel/...   rare schemes      the same
 //! /pkg/webgl/...    the fallback      the same
 //! ```
 //!
@@ -29,7 +30,7 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
     let port = arguments.value("--port")?.map(|port| port.parse()).transpose();
     let port = port.map_err(|_| anyhow::anyhow!("--port takes a number from 0 to 65535"))?;
     let modules = match arguments.value("--only")? {
-        Some(id) => vec![Module::parse(&id)?, Module::Files],
+        Some(id) => vec![Module::parse(&id)?, Module::Files, Module::Kernel],
         None => Module::ALL.to_vec(),
     };
     arguments.finish()?;

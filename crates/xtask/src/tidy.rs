@@ -60,6 +60,8 @@ pub fn run(arguments: Arguments) -> Result<()> {
         "limn-formats",
         "--package",
         "limn-document",
+        "--package",
+        "limn-kernel",
         "--lib",
         "--",
     ]);
@@ -70,10 +72,10 @@ pub fn run(arguments: Arguments) -> Result<()> {
         say(format!("clippy on the {} module", module.id()));
         let mut clippy = process::cargo();
         clippy.args(["clippy", "--no-deps", "--package", module.crate_name(), "--lib", "--target", WASM]);
-        if module != Module::Files {
+        if module.is_engine() {
             clippy.args(["--no-default-features", "--features", module.id()]);
         }
-        // One folder for all three: what they share is checked once, and nothing is linked.
+        // One folder for all: what they share is checked once, and nothing is linked.
         clippy.arg("--target-dir").arg(paths::root().join("target/wasm-clippy"));
         clippy.env("RUSTFLAGS", toolchain::wasm_flags()).args(["--", "-D", "warnings"]);
         check("clippy on a wasm module", process::succeeds(no_panic(&mut clippy))?);

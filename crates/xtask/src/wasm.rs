@@ -1,11 +1,11 @@
-//! Building the wasm modules: the engine, twice, and the files' readers and writers.
+//! Building the wasm modules: the engine, twice, the files' readers and writers, and the kernel with every scheme.
 //!
 //! ```text
 //! crates/engine ──cargo rustc──► target/wasm-webgpu/…/limn_engine.wasm ──wasm-bindgen──► target/wasm-webgpu/pkg-serve/
 //!                         └────► target/wasm-webgl/…                   ──────────────►  target/wasm-webgl/pkg-serve/
 //! ```
 //!
-//! There are two modules because WebGL2 support costs half a megabyte that most visitors never need; the page probes
+//! There are two engines because WebGL2 support costs half a megabyte that most visitors never need; the page probes
 //! for WebGPU and loads one. `wasm-bindgen` runs in this process, so nobody has to install a command of exactly the
 //! right version. Costs, warm: nothing changed, nothing is done; one line changed, a few seconds (profile `serve`);
 //! profile `dist` links everything afresh, close to a minute a module.
@@ -28,15 +28,26 @@ pub enum Module {
     WebGl,
     /// Reads and writes model files: loaded when one arrives.
     Files,
+    /// Refines by every scheme: loaded when one is chosen that the engine has no rules of.
+    Kernel,
 }
 
 impl Module {
     /// All, the one that most visitors load first.
-    pub const ALL: [Self; 3] = [Self::WebGpu, Self::Files, Self::WebGl];
+    pub const ALL: [Self; 4] = [Self::WebGpu, Self::Files, Self::Kernel, Self::WebGl];
+
+    /// Whether it is an engine: what draws, and what a first visit loads one of.
+    pub fn is_engine(self) -> bool {
+        matches!(self, Self::WebGpu | Self::WebGl)
+    }
 
     /// The crate that it is made from.
     pub fn crate_name(self) -> &'static str {
-        if self == Self::Files { "limn-files" } else { "limn-engine" }
+        match self {
+            Self::WebGpu | Self::WebGl => "limn-engine",
+            Self::Files => "limn-files",
+            Self::Kernel => "limn-kernel",
+        }
     }
 
     /// Names of the glue and of the module itself in [`Module::package`].
@@ -51,6 +62,7 @@ impl Module {
             Self::WebGpu => "webgpu",
             Self::WebGl => "webgl",
             Self::Files => "files",
+            Self::Kernel => "kernel",
         }
     }
 
@@ -59,7 +71,7 @@ impl Module {
         Self::ALL
             .into_iter()
             .find(|module| module.id() == id)
-            .with_context(|| format!("`{id}` is no module: webgpu, webgl or files"))
+            .with_context(|| format!("`{id}` is no module: webgpu, webgl, files or kernel"))
     }
 
     /// The target folder that it has for itself.
@@ -124,7 +136,7 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     // `cargo rustc --crate-type`: the library is also an rlib (clippy and native tests want one), and cargo skips
     // link-time optimisation for a library that is both.
     command.args(["rustc", "--package", module.crate_name(), "--lib", "--crate-type", "cdylib"]);
-    if module != Module::Files {
+    if module.is_engine() {
         command.args(["--no-default-features", "--features", module.id()]);
     }
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
@@ -162,7 +174,7 @@ pub fn newest_source() -> Result<SystemTime> {
     for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"] {
         newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
     }
-    for name in ["mesh", "formats", "document", "render", "engine", "files"] {
+    for name in ["mesh", "formats", "document", "render", "engine", "files", "kernel"] {
         newest = newest.max(newest_below(&paths::root().join("crates").join(name))?);
     }
     Ok(newest)

@@ -20,6 +20,7 @@ use limn_render::{Gpu, Renderer, Screen, Tier};
 use wasm_bindgen::prelude::*;
 
 use crate::gestures::{Gestures, Viewport};
+use crate::kernel::Remote;
 use crate::making::{Made, Making, Parts};
 use crate::pick::pick;
 use crate::post::{Clock, Post};
@@ -87,6 +88,9 @@ pub struct Engine {
     turn: u32,
     known: Option<Known>,
     making: Option<Making>,
+    /// The module with every scheme, once it is loaded, and whether what is to be made waits for it.
+    kernel: Option<Remote>,
+    wants_kernel: bool,
     shown: Option<Made>,
     /// The model whose materials and pictures are on the GPU, and the turn in which its pictures are decoded.
     painted: Option<(Arc<limn_formats::Model>, u32)>,
@@ -150,6 +154,8 @@ impl Engine {
             turn: 0,
             known: None,
             making: None,
+            kernel: None,
+            wants_kernel: false,
             shown: None,
             painted: None,
             caged: None,

@@ -56,7 +56,7 @@ impl Engine {
             (Some((painted, _)), Some(model)) => !Arc::ptr_eq(painted, model),
             _ => true,
         };
-        let waiting = self.making.is_some() && other;
+        let waiting = (self.making.is_some() || self.wants_kernel) && other;
         let mut drawn = false;
         if std::mem::take(&mut self.dirty.picture) && !waiting {
             drawn = self.draw() && self.shown.is_some();
@@ -176,6 +176,7 @@ impl Engine {
             shown,
             times: self.times,
             busy: self.making.is_some()
+                || self.wants_kernel
                 || self.told.is_some()
                 || self.tween.is_some()
                 || self.making_room.is_some()
@@ -240,7 +241,7 @@ impl Engine {
 
     /// Writes a file now, or when the level that is being made is there.
     pub(super) fn start_export(&mut self, file: String) {
-        if self.making.is_some() {
+        if self.making.is_some() || self.wants_kernel {
             self.export = Some(file);
         } else {
             self.write(&file);

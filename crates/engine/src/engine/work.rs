@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use limn_document::parameters;
 use limn_document::view::Shading;
-use limn_mesh::{Connectivity, Mesh};
+use limn_mesh::{Connectivity, Job, Mesh};
+use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::{Engine, Known};
-use crate::making::{MOST_FLAT, Making, Parts, Step};
+use crate::kernel::{Kernel, Remote};
+use crate::making::{MOST_FLAT, Making, Parts, Step, Work};
 use crate::protocol::{Card, Message};
 use crate::report::Facts;
 use limn_document::words::sentence;
@@ -16,6 +18,28 @@ use limn_document::words::sentence;
 const QUIET: f64 = 200.0;
 /// The pause between two progress messages.
 const PAUSE: f64 = 80.0;
+
+#[wasm_bindgen]
+impl Engine {
+    /// Whether something waits for the module with every scheme; `take_kernel` answers.
+    pub fn wants_kernel(&self) -> bool {
+        self.wants_kernel
+    }
+
+    /// The surroundings loaded the module with every scheme; none if it could not be.
+    pub fn take_kernel(&mut self, kernel: Option<Kernel>) {
+        self.kernel = kernel.map(Remote::new);
+        if self.kernel.is_some() {
+            self.no_card("kernel");
+        }
+        // It may have been cancelled, or another scheme chosen meanwhile.
+        match (std::mem::take(&mut self.wants_kernel), &self.kernel) {
+            (true, Some(_)) => self.sync(),
+            (true, None) => self.cannot_load(),
+            (false, _) => {}
+        }
+    }
+}
 
 impl Engine {
     /// Starts or drops work until what is being made, or else what is shown, is what the document wants.
@@ -28,6 +52,7 @@ impl Engine {
             self.known = Some(Known { mesh: mesh.clone(), facts, parts });
         }
         let Some(known) = &self.known else { return };
+        self.wants_kernel = false;
         let faces = self.document.predict(plan.level).map_or(0, |p| p.counts.faces);
         let corners = self.document.view().shading == Shading::Flat && faces <= MOST_FLAT;
         let shown = self.shown.as_ref().filter(|m| m.is(&mesh, &plan, corners));
@@ -44,7 +69,22 @@ impl Engine {
         }
         let making = match &self.shown {
             Some(made) if made.is(&mesh, &plan, !corners) => Ok(Making::again(made, corners)),
-            _ => Making::refine(mesh, plan, corners, known.parts.clone(), self.document.budget()),
+            _ => {
+                if !plan.is_here(&mesh) && self.kernel.is_none() {
+                    // What is shown stays until the module comes.
+                    self.making = None;
+                    self.wants_kernel = true;
+                    return;
+                }
+                let budget = self.document.budget();
+                let work: Result<Box<dyn Work>, String> = match &mut self.kernel {
+                    Some(kernel) if !plan.is_here(&mesh) => kernel.start(&mesh, &plan, budget),
+                    _ => Job::new(mesh.clone(), plan.clone(), budget)
+                        .map(|job| Box::new(job) as Box<dyn Work>)
+                        .map_err(|e| e.to_string()),
+                };
+                work.map(|work| Making::refine(work, mesh, plan, corners, known.parts.clone()))
+            }
         };
         match making {
             Ok(making) => {
@@ -53,12 +93,24 @@ impl Engine {
                 }
                 self.making = Some(making);
             }
-            Err(error) => self.cannot_show(&error.to_string()),
+            Err(error) => self.cannot_show(&error),
         }
+    }
+
+    /// Says that the module with every scheme could not be loaded, and goes back.
+    fn cannot_load(&mut self) {
+        self.dirty.state = true;
+        let scheme = self.document.plan().map_or("", |p| p.scheme.info.name);
+        let title = "A part of Limn could not be loaded".to_owned();
+        let lines = vec![format!("{scheme} needs it. Check the connection and choose it again.")];
+        self.card(Card { id: "kernel", kind: "error", title, lines, ..Card::default() });
+        self.go_back();
     }
 
     fn cannot_show(&mut self, why: &str) {
         self.making = None;
+        // If it was the other module that failed, it is of no more use.
+        self.kernel = None;
         self.progress_over();
         let title = "This level cannot be shown".to_owned();
         self.card(Card { id: "draw", kind: "error", title, lines: vec![sentence(why)], ..Card::default() });
@@ -91,7 +143,7 @@ impl Engine {
                 }
                 Ok(Step::More) if clock.now() < deadline => {}
                 Ok(Step::More) => break,
-                Err(error) => return self.cannot_show(&error.to_string()),
+                Err(error) => return self.cannot_show(&error),
             }
         }
         let now = clock.now();
@@ -114,7 +166,7 @@ impl Engine {
     /// Drops the work that is going on and makes the document what is shown again.
     pub(super) fn stop_making(&mut self) {
         self.export = None;
-        if self.making.take().is_some() {
+        if self.making.take().is_some() | std::mem::take(&mut self.wants_kernel) {
             self.go_back();
         }
     }

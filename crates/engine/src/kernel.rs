@@ -1,0 +1,95 @@
+//! The module with every scheme, as the engine sees it: objects of `crates/kernel` behind JavaScript.
+//!
+//! `web/host.js` loads that module when [`Engine::wants_kernel`](crate::Engine::wants_kernel) says so, and hands over a
+//! `Kernel`. A mesh is sent once, a plan each time; a [`Run`] is stepped like a job of this module. Whatever goes wrong over
+//! there, a trap included, comes back as one sentence: the engine forgets the kernel then, and asks for another one.
+
+use std::sync::Arc;
+
+use limn_mesh::{Mesh, Plan, Refined};
+use wasm_bindgen::prelude::*;
+
+use crate::making::Work;
+
+#[wasm_bindgen]
+extern "C" {
+    /// `Kernel` of `crates/kernel`.
+    pub type Kernel;
+    #[wasm_bindgen(method, catch)]
+    fn mesh(this: &Kernel, bytes: &[u8]) -> Result<(), JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn start(this: &Kernel, plan: &[u8], budget: f64) -> Result<Run, JsValue>;
+
+    /// `Run` of `crates/kernel`.
+    type Run;
+    #[wasm_bindgen(method, catch)]
+    fn step(this: &Run, rows: usize) -> Result<bool, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn progress(this: &Run) -> Result<f32, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn finish(this: &Run) -> Result<Vec<u8>, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn free(this: &Run) -> Result<(), JsValue>;
+}
+
+/// A kernel, and the mesh that it has.
+pub struct Remote {
+    kernel: Kernel,
+    mesh: Option<Arc<Mesh>>,
+}
+
+impl Remote {
+    /// One that has no mesh yet.
+    pub fn new(kernel: Kernel) -> Remote {
+        Remote { kernel, mesh: None }
+    }
+
+    /// Begins to refine.
+    ///
+    /// # Errors
+    /// One sentence.
+    pub fn start(&mut self, mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Box<dyn Work>, String> {
+        if self.mesh.as_ref().is_none_or(|m| !Arc::ptr_eq(m, mesh)) {
+            self.mesh = None;
+            self.kernel.mesh(&mesh.pack()).map_err(sentence)?;
+            self.mesh = Some(mesh.clone());
+        }
+        let run = self.kernel.start(&plan.pack(), budget as f64).map_err(sentence)?;
+        Ok(Box::new(Away { run: Some(run), mesh: mesh.clone() }))
+    }
+}
+
+/// A run over there; none once it is finished.
+struct Away {
+    run: Option<Run>,
+    mesh: Arc<Mesh>,
+}
+
+impl Work for Away {
+    fn step(&mut self, rows: usize) -> Result<bool, String> {
+        self.run.as_ref().map_or(Ok(true), |run| run.step(rows)).map_err(sentence)
+    }
+
+    fn progress(&self) -> f32 {
+        self.run.as_ref().and_then(|run| run.progress().ok()).unwrap_or(0.0)
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<Refined, String> {
+        let bytes = self.run.take().map_or(Ok(Vec::new()), |run| run.finish()).map_err(sentence)?;
+        Refined::unpack(&bytes, self.mesh.clone()).map_err(|e| e.to_string())
+    }
+}
+
+impl Drop for Away {
+    fn drop(&mut self) {
+        // What a trap left behind cannot be freed; it goes with its module.
+        let _ = self.run.take().map(|run| run.free());
+    }
+}
+
+/// A thrown sentence is one of ours. Anything else is a trap: most likely there was no more memory.
+fn sentence(thrown: JsValue) -> String {
+    thrown
+        .as_string()
+        .unwrap_or_else(|| "refining it took more memory than the browser gives; choose a lower level".to_owned())
+}

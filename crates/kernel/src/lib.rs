@@ -1,0 +1,79 @@
+//! limn-kernel: refining by every scheme, in a wasm module that is loaded when a plan needs it.
+//!
+//! The page's engine has the rules of the common schemes only, so a first visit stays light however many schemes there are.
+//! The first plan that it has no rules for makes it load this module, which works in the same thread:
+//!
+//! ```text
+//!   engine ── mesh as bytes, once a mesh ──>  Kernel
+//!          ── plan as bytes ───────────────>  Kernel::start ──> Run: step, step, ...
+//!          <── level as bytes ──────────────  Run::finish
+//! ```
+//!
+//! A run is stepped by the engine as it steps its own jobs: in slices of a few milliseconds, between which it takes messages
+//! and draws. Dropping the run cancels it. Cost beside refining: one copy of the mesh and two of the level.
+//! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
+
+use std::sync::Arc;
+
+use limn_mesh::{Job, Mesh, Plan};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// A mesh, and what refines it.
+#[derive(Debug, Default)]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
+pub struct Kernel {
+    mesh: Option<Arc<Mesh>>,
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
+impl Kernel {
+    /// One without a mesh.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen(constructor))]
+    pub fn new() -> Kernel {
+        Kernel::default()
+    }
+
+    /// Takes a packed mesh in place of the one before.
+    ///
+    /// # Errors
+    /// One sentence, if the bytes are none.
+    pub fn mesh(&mut self, bytes: &[u8]) -> Result<(), String> {
+        self.mesh = None;
+        self.mesh = Some(Arc::new(Mesh::unpack(bytes).map_err(|e| e.to_string())?));
+        Ok(())
+    }
+
+    /// Begins to refine the mesh by a packed plan, with at most `budget` bytes.
+    ///
+    /// # Errors
+    /// One sentence: [`limn_mesh::RefineError`], or the bytes are no plan, or there is no mesh.
+    pub fn start(&self, plan: &[u8], budget: f64) -> Result<Run, String> {
+        let mesh = self.mesh.clone().ok_or("there is no mesh to refine")?;
+        let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
+        Job::new(mesh, plan, budget as u64).map(Run).map_err(|e| e.to_string())
+    }
+}
+
+/// A refinement under way. Dropping it cancels.
+#[derive(Debug)]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
+pub struct Run(Job);
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
+impl Run {
+    /// Works off about `rows` rows and says whether all is done: [`Job::step`].
+    pub fn step(&mut self, rows: usize) -> bool {
+        self.0.step(rows)
+    }
+
+    /// How much is done, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        self.0.progress()
+    }
+
+    /// The level as bytes, after working off what is left.
+    pub fn finish(self) -> Vec<u8> {
+        self.0.finish().pack()
+    }
+}
