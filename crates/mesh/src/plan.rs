@@ -94,7 +94,7 @@ impl Plan {
     /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, or the mesh
     /// itself. A build without the feature `full` has the code for these; the one place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
-        let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.limit;
+        let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
         let plain = self.scheme.common && self.later.is_empty();
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
         closed && (self.level == 0 || (plain && smooth))

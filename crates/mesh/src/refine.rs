@@ -11,6 +11,7 @@
 //! Cost: about 20 ns an output quad, 12 a triangle, a third of it in the levels before the last. Memory: [`Prediction`].
 //! Limit: 2^31 - 1 corners in the last level, whatever the budget.
 
+use crate::FULL;
 use crate::fairing;
 use crate::limit::{Limit, Projection, Projector, limit};
 use crate::mesh::Mesh;
@@ -211,7 +212,7 @@ impl Job {
     /// [`RefineError`], before anything is allocated.
     pub fn new(mesh: Arc<Mesh>, plan: Plan, budget: u64) -> Result<Job, RefineError> {
         let steps = admit(&mesh, &plan, budget)?;
-        let limit = if plan.projects() { plan.beyond(&mesh)? } else { None };
+        let limit = if FULL && plan.projects() { plan.beyond(&mesh)? } else { None };
         let mut total = 0;
         let uv = mesh.uv.as_ref().filter(|_| steps.iter().all(|s| s.split.keeps_corners()));
         let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (uv.map(|u| u.counts), true)];
@@ -271,7 +272,7 @@ impl Job {
         while !self.step(usize::MAX) {}
         let normals = self.geometry.limit.take().map(|l| l.normals);
         let mut refined = self.gather();
-        refined.limit_normals = normals.map(|n| complete(n, &refined.points, &refined.faces));
+        refined.limit_normals = normals.filter(|_| FULL).map(|n| complete(n, &refined.points, &refined.faces));
         refined
     }
 

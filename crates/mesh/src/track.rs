@@ -257,7 +257,7 @@ impl Track {
             }
             return None;
         }
-        if let (Stage::Limit(at), Some(limit)) = (&mut self.stage, &mut self.limit) {
+        if FULL && let (Stage::Limit(at), Some(limit)) = (&mut self.stage, &mut self.limit) {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let tags = plan.tags(limit.step(), self.level, sharp);

@@ -6,7 +6,7 @@ use common::{build, gallery};
 use limn_mesh::pack::Damaged;
 use limn_mesh::scheme::{Decay, FaceVarying, Rules, TriangleRule};
 use limn_mesh::{
-    Accepts, Boundary, Fairing, Marks, Mesh, Params, Plan, Refined, Run, SCHEMES, Soup, refine, scheme,
+    Accepts, Boundary, Fairing, LimitRule, Marks, Mesh, Params, Plan, Refined, Run, SCHEMES, Soup, refine, scheme,
     triangulate_soup,
 };
 use std::sync::Arc;
@@ -40,6 +40,7 @@ fn same(a: &Refined, b: &Refined, what: &str) {
     assert_eq!(a.uv, b.uv, "{what}");
     assert_eq!(a.colors, b.colors, "{what}");
     assert_eq!(a.kinds, b.kinds, "{what}");
+    assert_eq!(a.limit_normals, b.limit_normals, "{what}");
     let sources = |r: &Refined| (0..r.faces.count() as u32).map(|f| r.face_source(f)).collect::<Vec<_>>();
     assert_eq!(sources(a), sources(b), "{what}");
     assert_eq!(a.normals(), b.normals(), "{what}");
@@ -58,7 +59,8 @@ fn meshes_plans_and_levels_come_back() {
                 for (level, boundary) in
                     [(0, Boundary::EdgeOnly), (1, Boundary::EdgeAndCorner), (2, Boundary::EdgeOnly)]
                 {
-                    let plan = Plan::new(scheme, boundary, level);
+                    let limit = level == 1;
+                    let plan = Plan { limit, ..Plan::new(scheme, boundary, level) };
                     let sent = Plan::unpack(&plan.pack()).unwrap();
                     assert_eq!(sent, plan);
                     let what = format!("{name}, {}, level {level}", scheme.info.id);
@@ -133,7 +135,8 @@ fn what_the_first_module_can_make() {
         let fair = |at| Plan { fairings: vec![Fairing { at, iterations: 1 }], ..plan.clone() };
         assert!(!fair(2).is_common(&plain) && !fair(0).to(0).is_common(&plain));
         assert_eq!(fair(3).is_common(&plain), common, "what comes after the last level is not made");
-        assert!(!Plan { limit: true, ..plan.clone() }.is_common(&plain));
+        let moves = scheme.limit != LimitRule::Itself;
+        assert_eq!(Plan { limit: true, ..plan.clone() }.is_common(&plain), common && !moves);
         let later = vec![Run { from: 1, scheme, params: Params::default() }];
         assert!(!Plan { later, ..plan.clone() }.is_common(&plain));
         assert!(plan.is_here(&creased), "tests have everything");
