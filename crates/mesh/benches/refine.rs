@@ -105,7 +105,7 @@ fn main() {
     for id in ["sqrt3", "j-spline", "butterfly", "modified-butterfly"] {
         table.row("creature, triangles", id, &triangles, 4);
     }
-    for id in ["doo-sabin", "kobbelt", "quad-triangle"] {
+    for id in ["doo-sabin", "nurss", "kobbelt", "quad-triangle"] {
         table.row("creature", id, &quads, 4);
     }
     table.row("pawn", "loop", &built("pawn"), 6);

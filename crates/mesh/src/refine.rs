@@ -149,7 +149,8 @@ pub fn predict(mesh: &Mesh, plan: &Plan) -> Result<Option<Prediction>, RefineErr
     // Result: points, corners. Peak beside it: the parent's points and, from level 1 on, its stored half-edges.
     let track = |(c, b): (Counts, Counts), value: u128| {
         let (c, b) = ((c.vertices, c.corners), (b.vertices, b.corners));
-        let words = if last.is_some_and(|s| s.stored) { 5 } else { 2 };
+        let knots = if mesh.knots.is_empty() { 0 } else { 2 };
+        let words = if last.is_some_and(|s| s.stored) { 5 + knots } else { 2 };
         let stored = if plan.level > 1 { 4 * words * u128::from(b.1) + 4 * u128::from(b.0) } else { 0 };
         let parent = if plan.level > 0 { value * u128::from(b.0) } else { 0 };
         let closing =
@@ -393,6 +394,7 @@ fn run<const N: usize>(
     let kept = plan.kept(mesh);
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
+    let mut knots = mesh.knots.clone();
     for at in 0..=plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
         let sharp = sharp_at(&steps, at, mesh, &kept);
@@ -408,14 +410,15 @@ fn run<const N: usize>(
         }
         let Some(step) = steps.get(at as usize) else {
             if let Some(step) = &beyond {
-                last(step.scheme, (&level, step.split, plan.tags(step, at, sharp)), &mut old);
+                let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp) };
+                last(step.scheme, (&level, step.split, tags), &mut old);
             }
             break;
         };
         inspect(&level);
         let split = step.split;
         let lone = split.lone(&level);
-        let tags = Tags { lone: &lone, ..plan.tags(step, at, sharp) };
+        let tags = Tags { lone: &lone, knots: &knots, ..plan.tags(step, at, sharp) };
         let mut new = vec![[0.0; N]; split.children(&level) as usize];
         let mut take = |child: u32, row: &[(Source, f64)], offset: [f64; 3]| {
             let mut sum = weigh(row, |s| of(&old, &new, s));
@@ -431,6 +434,7 @@ fn run<const N: usize>(
             let mut below = Owned::below(&level, split);
             let mut at = 0;
             while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
+            knots = split.knots(&level, &knots, &lone);
             owned = Some(below.stored_for(next));
         }
     }

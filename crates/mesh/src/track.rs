@@ -115,6 +115,8 @@ pub(crate) struct Track {
     pins: Vec<bool>,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
+    /// Knot intervals of `level`, but at level 0, where the mesh has them.
+    knots: Vec<f32>,
     /// Whether faces list what they came from, because arithmetic does not tell.
     listed: bool,
     /// If the last level goes to the limit.
@@ -164,6 +166,7 @@ impl Track {
             pins: Vec::new(),
             lone: Vec::new(),
             limit: limit.map(Projection::new),
+            knots: Vec::new(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
@@ -260,7 +263,8 @@ impl Track {
         if FULL && let (Stage::Limit(at), Some(limit)) = (&mut self.stage, &mut self.limit) {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
-            let tags = plan.tags(limit.step(), self.level, sharp);
+            let knots = if self.level == 0 { &mesh.knots } else { &self.knots };
+            let tags = Tags { knots, ..plan.tags(limit.step(), self.level, sharp) };
             if limit.work((level, tags), old, &mut self.new_points, at, quota) {
                 std::mem::swap(old, &mut self.new_points);
                 self.stage = Stage::Done;
@@ -274,7 +278,7 @@ impl Track {
             // Corners are among the pins, and no others.
             Tags { rules: Rules { boundary: Boundary::EdgeOnly, ..tags.rules }, lone: &self.lone, ..tags }
         } else {
-            Tags { lone: &self.lone, ..tags }
+            Tags { lone: &self.lone, knots: if self.level == 0 { &mesh.knots } else { &self.knots }, ..tags }
         };
         let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
         let last = following.is_none();
@@ -313,6 +317,9 @@ impl Track {
                 let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32)));
                 self.source = descend(&self.source, cut.source);
                 (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
+                if closes {
+                    self.knots = split.knots(level, tags.knots, &self.lone);
+                }
                 self.advance(split);
                 return Some(half_edges);
             }
@@ -338,6 +345,7 @@ impl Track {
                 let cut = split.cut(t);
                 let stored = cut.connect(t, split, children as u32);
                 self.source = descend(&self.source, cut.source);
+                self.knots = split.knots(level, tags.knots, &self.lone);
                 self.advance(split);
                 return Some(Some(Owned::Stored(stored)));
             }
@@ -345,6 +353,7 @@ impl Track {
                 let next = self.next.get_or_insert_with(|| Owned::below(level, split));
                 if next.fill(level, at, quota) {
                     let next = self.next.take().map(|n| n.stored_for(following));
+                    self.knots.clear();
                     self.list(level, split);
                     self.advance(split);
                     return Some(next);

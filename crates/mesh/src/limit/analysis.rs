@@ -69,7 +69,7 @@ impl Analysis {
     pub fn mask(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32, mask: &mut Mask) {
         loop {
             let sharp = |v: u32| setting.tags.is_sharp(level, v);
-            let patch = Patch::cut(level, Anchor::Vertex(v), self.rings, sharp, &mut self.level);
+            let patch = Patch::cut(level, Anchor::Vertex(v), self.rings, (sharp, setting.tags.knots), &mut self.level);
             let hash = hash(&patch.key);
             let at = self.kinds.partition_point(|k| k.0 < hash);
             let known = (at..self.kinds.len())
@@ -228,7 +228,8 @@ fn refine(
     // Old vertices keep their numbers, or there are none.
     let keeps = setting.split.keeps_vertices();
     let sharp = |v: u32| keeps && patch.sharp.get(v as usize).is_some_and(|s| *s);
-    let cut = Patch::cut(&child, next, rings, sharp, stamps);
+    let knots = setting.split.knots(&level, &patch.knots, &lone);
+    let cut = Patch::cut(&child, next, rings, (sharp, &knots), stamps);
     let rows = cut.vertices.iter().map(|&v| rows[v as usize].clone()).collect();
     // In its own numbering the anchor comes first.
     let own = match next {

@@ -34,7 +34,9 @@ pub(super) struct Patch {
     pub rings: Vec<u32>,
     /// Whether each stays where it is.
     pub sharp: Vec<bool>,
-    /// Faces and sharp vertices in one list: equal for neighbourhoods that look alike.
+    /// Knot intervals, as of a mesh; empty if all are 1.
+    pub knots: Vec<f32>,
+    /// Faces, sharp vertices and knots in one list: equal for neighbourhoods that look alike.
     pub key: Vec<u32>,
 }
 
@@ -107,12 +109,13 @@ impl<C: Connectivity> Growing<'_, C> {
 }
 
 impl Patch {
-    /// Cuts out what is within `rings` rings of faces around `anchor`. `sharp` says which vertices of the level stay.
+    /// Cuts out what is within `rings` rings of faces around `anchor`. `sharp` says which vertices of the level stay,
+    /// `knots` are its intervals.
     pub fn cut<C: Connectivity>(
         c: &C,
         anchor: Anchor,
         rings: u32,
-        sharp: impl Fn(u32) -> bool,
+        (sharp, knots): (impl Fn(u32) -> bool, &[f32]),
         stamps: &mut Stamps,
     ) -> Patch {
         stamps.vertex.resize(stamps.vertex.len().max(c.vertices() as usize), 0);
@@ -160,7 +163,12 @@ impl Patch {
                 mate[h] = face - 1 + run.iter().position(|&x| x == t).unwrap_or(0) as u32;
             }
         }
-        let key = key(anchor, &offsets, &corners, &sharp, &ring, rings);
+        let mut key = key(anchor, &offsets, &corners, &sharp, &ring, rings);
+        let mut own_knots = Vec::new();
+        if !knots.is_empty() {
+            own_knots.extend(half_edges.iter().flat_map(|&g| [knots[2 * g as usize], knots[2 * g as usize + 1]]));
+            key.extend(own_knots.iter().map(|d| d.to_bits()));
+        }
         for &g in &half_edges {
             stamps.face[c.face(g) as usize] = 0;
         }
@@ -174,13 +182,14 @@ impl Patch {
             rings: class.iter().map(|c| ring[back(c)]).collect(),
             sharp: class.iter().map(|c| sharp[back(c)]).collect(),
             vertices: class.iter().map(|c| vertices[back(c)]).collect(),
+            knots: own_knots,
             key,
         }
     }
 
     /// The rules' tags for this patch.
     pub fn tags<'a>(&'a self, tags: Tags<'a>, lone: &'a [u32]) -> Tags<'a> {
-        Tags { sharp: &self.sharp, lone, ..tags }
+        Tags { sharp: &self.sharp, knots: &self.knots, lone, ..tags }
     }
 }
 

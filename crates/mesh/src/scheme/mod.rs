@@ -20,6 +20,7 @@ mod linear;
 #[path = "loop.rs"]
 mod loop_;
 mod modified_butterfly;
+mod nurss;
 mod params;
 mod quad_triangle;
 mod sqrt3;
@@ -33,6 +34,7 @@ pub use kobbelt::Kobbelt;
 pub use linear::Linear;
 pub use loop_::Loop;
 pub use modified_butterfly::ModifiedButterfly;
+pub use nurss::Nurss;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use quad_triangle::QuadTriangle;
 pub use sqrt3::Sqrt3;
@@ -57,6 +59,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<Kobbelt>(),
     entry::<DooSabin>(),
     entry::<Midpoint>(),
+    entry::<Nurss>(),
     entry::<Linear>(),
 ];
 
@@ -198,6 +201,8 @@ pub struct Tags<'a> {
     pub sharp: &'a [bool],
     /// Corners with two images, of the dual split, by their half-edges: children from `half_edges()` on.
     pub lone: &'a [u32],
+    /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
+    pub knots: &'a [f32],
     /// The scheme's parameters: [`Params::of`].
     pub params: [f64; MOST_PARAMS],
 }
@@ -205,7 +210,7 @@ pub struct Tags<'a> {
 impl Tags<'_> {
     /// Tags of a mesh without marks, at level 0.
     pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        Tags { rules, step: 0, sharp: &[], lone: &[], params }
+        Tags { rules, step: 0, sharp: &[], lone: &[], knots: &[], params }
     }
 
     /// Whether `v`, which starts its turn at `start`, is kept.

@@ -244,6 +244,14 @@ impl Split {
         }
     }
 
+    /// The knot intervals of the next level, for splits that carry them: the dual one. `lone` is [`Split::lone`] of `c`.
+    pub(crate) fn knots(self, c: &Level<'_>, knots: &[f32], lone: &[u32]) -> Vec<f32> {
+        match (self, c) {
+            (Split::Dual { .. }, Level::Base(t)) => stored::dual_knots(t, knots, lone),
+            _ => Vec::new(),
+        }
+    }
+
     /// The faces of the next level, for splits that store it. `c` is a stored level.
     pub(crate) fn cut(self, c: &crate::Topology) -> stored::Cut {
         match self {

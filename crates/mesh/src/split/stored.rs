@@ -119,6 +119,50 @@ pub(crate) fn dual(c: &Topology, rounded: &[u32]) -> Cut {
     cut
 }
 
+/// The knot intervals of [`dual`]'s half-edges, from those of the parent's. At the image of a corner they are the corner's
+/// own: toward the next vertex of its face and straight away from it, toward the one before and straight away from that.
+pub(crate) fn dual_knots(c: &Topology, knots: &[f32], rounded: &[u32]) -> Vec<f32> {
+    if knots.is_empty() {
+        return Vec::new();
+    }
+    // At the image of corner h along its face, and across.
+    let on = |h: u32| knots[2 * h as usize];
+    let back = |h: u32| knots[2 * c.prev(h) as usize + 1];
+    let mut out = Vec::with_capacity(8 * c.half_edges() as usize);
+    let mut second = rounded.iter().peekable();
+    for h in 0..c.half_edges() {
+        if second.next_if(|s| **s == h).is_some() {
+            out.extend([on(h), back(h)]); // between the two images of a corner
+        }
+        out.extend([on(h), back(c.next(h))]);
+    }
+    for e in 0..c.edges() {
+        let h = c.edge_half_edge(e);
+        let t = c.twin(h);
+        if !is_boundary(t) {
+            let (hn, tn) = (c.next(h), c.next(t));
+            out.extend([back(hn), on(h), back(h), on(tn), back(tn), on(t), back(t), on(hn)]);
+        }
+    }
+    for v in 0..c.vertices() {
+        let (from, mut first, mut faces) = (out.len(), None, 0);
+        c.turn(v, |h| {
+            // Behind the corner before there is this one.
+            if faces > 0 {
+                out.push(back(h));
+            }
+            out.push(on(h));
+            first = first.or(Some(h));
+            faces += 1;
+        });
+        out.extend(first.map(back));
+        if faces < 3 {
+            out.truncate(from);
+        }
+    }
+    out
+}
+
 /// The triangles of the sqrt3 split, one a half-edge and in their order.
 pub(crate) fn sqrt3(c: &Topology, trisect: bool) -> Cut {
     let h = c.half_edges();
