@@ -17,13 +17,18 @@ use limn_mesh::pair::{ASK_BELOW, PairReport, pair_triangles};
 use limn_mesh::{Mesh, Note, Soup, TopologyError, Weld, triangulate_soup};
 
 use crate::camera::Bounds;
+use crate::command::CreaseWhere;
 
 /// A change of the model, in the order in which it was made.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Edit {
     Triangulate,
     Center,
     Scale(Option<f32>),
+    Crease(CreaseWhere, f32),
+    Corner(u32, f32),
+    Hole(u32),
+    Knot([u32; 2], bool, f32),
 }
 
 /// One sentence about the model for the person who opened it.
@@ -114,6 +119,22 @@ impl Base {
                     }
                 }
                 Edit::Scale(factor) => scale(soup.to_mut(), *factor)?,
+                Edit::Crease(CreaseWhere::Chain(vertices), sharpness) => {
+                    let edges = vertices.windows(2).filter_map(|w| <[u32; 2]>::try_from(w).ok());
+                    soup.to_mut().marks.creases.extend(edges.map(|edge| (edge, *sharpness)));
+                }
+                Edit::Crease(CreaseWhere::Angle(degrees), sharpness) => {
+                    let edges = Mesh::build(&soup, weld)?.0.edges_bent_by_more(f64::from(*degrees));
+                    soup.to_mut().marks.creases.extend(edges.into_iter().map(|edge| (edge, *sharpness)));
+                }
+                Edit::Crease(CreaseWhere::Everywhere, _) => soup.to_mut().marks.creases.clear(),
+                Edit::Corner(vertex, sharpness) => soup.to_mut().marks.corners.push((*vertex, *sharpness)),
+                Edit::Hole(face) => soup.to_mut().marks.holes.push(*face),
+                Edit::Knot([a, b], both, interval) => {
+                    let knots = &mut soup.to_mut().marks.knots;
+                    knots.push(([*a, *b], *interval));
+                    knots.extend(both.then_some(([*b, *a], *interval)));
+                }
             }
         }
         let own = match soup {

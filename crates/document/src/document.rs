@@ -19,11 +19,11 @@ use std::sync::Arc;
 
 use limn_formats::Model;
 use limn_formats::parcel::Notice;
-use limn_mesh::{Accepts, Mesh, Params, Plan, Prediction, RefineError, Soup, Weld, predict, shape};
+use limn_mesh::{Accepts, Mesh, Params, Plan, Prediction, RefineError, Run, Soup, Weld, predict, shape};
 
 use crate::build::{Edit, Remark};
 use crate::camera::{Bounds, Standard};
-use crate::command::{self, Class, Command, VERSION};
+use crate::command::{self, Class, Command, CreaseWhere, VERSION};
 use crate::error::CommandError;
 use crate::history::History;
 use crate::link::{self, LinkError};
@@ -125,6 +125,14 @@ impl Document {
             | Command::Center
             | Command::Scale(_)
             | Command::Scheme { .. }
+            | Command::Fair { .. }
+            | Command::Crease { .. }
+            | Command::Corner { .. }
+            | Command::Hole(_)
+            | Command::Knot { .. }
+            | Command::CreaseDecay(_)
+            | Command::TriangleRule(_)
+            | Command::FaceVarying(_)
             | Command::Boundary(_)
             | Command::Limit(_)
             | Command::Level(_) => self.change(command, drag),
@@ -300,18 +308,41 @@ impl Document {
                 if *on && settings.scheme.info.accepts == Accepts::Triangles {
                     settings.scheme = find_scheme("catmull-clark")?;
                     settings.params = Params::default();
+                    settings.later.clear();
                 }
             }
             Command::Triangulate => Arc::make_mut(&mut after.edits).push(Edit::Triangulate),
             Command::Center => Arc::make_mut(&mut after.edits).push(Edit::Center),
             Command::Scale(factor) => Arc::make_mut(&mut after.edits).push(Edit::Scale(*factor)),
             Command::Scheme { id, parameters } => {
+                let (from, parameters) = parameters::level(parameters, "from")?;
                 let entry = find_scheme(id)?;
-                settings.params = parameters::read(&entry.info, parameters)?;
-                settings.scheme = entry;
+                settings.set_scheme(Run { from, scheme: entry, params: parameters::read(&entry.info, &parameters)? });
+            }
+            Command::Fair { iterations, parameters } => {
+                settings.set_fairing(parameters::fairing(*iterations, parameters)?)
+            }
+            Command::Crease { place, sharpness } => {
+                before.check_crease(place)?;
+                Arc::make_mut(&mut after.edits).push(Edit::Crease(place.clone(), *sharpness));
+            }
+            Command::Corner { vertex, sharpness } => {
+                before.check_vertex(*vertex)?;
+                Arc::make_mut(&mut after.edits).push(Edit::Corner(*vertex, *sharpness));
+            }
+            Command::Hole(face) => {
+                before.check_face(*face)?;
+                Arc::make_mut(&mut after.edits).push(Edit::Hole(*face));
+            }
+            Command::Knot { ends, both, interval } => {
+                before.check_crease(&CreaseWhere::Chain(ends.to_vec()))?;
+                Arc::make_mut(&mut after.edits).push(Edit::Knot(*ends, *both, *interval));
             }
             Command::Boundary(boundary) => settings.rules.boundary = *boundary,
             Command::Limit(on) => settings.limit = *on,
+            Command::CreaseDecay(decay) => settings.rules.decay = *decay,
+            Command::TriangleRule(rule) => settings.rules.triangle = *rule,
+            Command::FaceVarying(rule) => settings.rules.face_varying = *rule,
             Command::Level(n) => {
                 settings.level = u32::try_from(*n).map_err(|_| CommandError::NegativeLevel(*n))?;
             }

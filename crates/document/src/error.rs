@@ -1,5 +1,6 @@
 //! Why a command did nothing: one enum, one sentence each that says what to do instead.
 
+use limn_mesh::fairing::MOST_ITERATIONS;
 use limn_mesh::{RefineError, SCHEMES, SHAPES};
 
 use crate::build::BuildError;
@@ -46,6 +47,32 @@ pub enum CommandError {
         /// What it can be.
         expected: String,
     },
+    /// No edge joins the two vertices.
+    #[error("no edge joins vertices {0} and {1}; vertices are numbered from 0 as in the file")]
+    NoEdge(u32, u32),
+    /// There is no such vertex or face.
+    #[error("there is no {what} {index}; the model has {count}, numbered from 0")]
+    NoElement {
+        /// "vertex" or "face".
+        what: &'static str,
+        /// The number given.
+        index: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A command does not take this key.
+    #[error("`{command}` does not know the key `{key}`; it knows {known}")]
+    UnknownKey {
+        /// The command.
+        command: &'static str,
+        /// The key given.
+        key: String,
+        /// The key that it knows.
+        known: &'static str,
+    },
+    /// Fewer than none, or too many.
+    #[error("{0} iterations are not possible; a whole number from 0 to {MOST_ITERATIONS} is")]
+    Iterations(i32),
     /// A level below the model itself.
     #[error("there is no level {0}: level 0 is the model itself and the lowest")]
     NegativeLevel(i32),

@@ -3,7 +3,8 @@
 //! The registry says what there is and what it can be; this reads `key=value` words against it and writes back what was
 //! set. Numbers keep the digits that bring them back.
 
-use limn_mesh::{Domain, Info, Param, Params, Plan};
+use limn_mesh::fairing::MOST_ITERATIONS;
+use limn_mesh::{Domain, Fairing, Info, Param, Params, Plan, Run};
 
 use crate::command::Command;
 use crate::error::CommandError;
@@ -32,6 +33,35 @@ pub(crate) fn read(info: &'static Info, words: &[(String, String)]) -> Result<Pa
     Ok(params)
 }
 
+/// The highest level that a key can name: more than any budget holds.
+const HIGHEST: u32 = 31;
+
+/// Takes the level that `key` names out of words: 0 if none does.
+pub(crate) fn level(
+    words: &[(String, String)],
+    key: &'static str,
+) -> Result<(u32, Vec<(String, String)>), CommandError> {
+    let (named, others): (Vec<_>, Vec<_>) = words.iter().cloned().partition(|(k, _)| k == key);
+    let Some((_, text)) = named.last() else { return Ok((0, others)) };
+    let level = text.parse().ok().filter(|l| *l <= HIGHEST).ok_or_else(|| CommandError::BadParameter {
+        key,
+        value: crate::words::shorten(text),
+        expected: format!("a level from 0 to {HIGHEST}"),
+    })?;
+    Ok((level, others))
+}
+
+/// The fairing that `fair taubin N at=K` means.
+pub(crate) fn fairing(iterations: i32, words: &[(String, String)]) -> Result<Fairing, CommandError> {
+    let (at, others) = level(words, "at")?;
+    if let Some((key, _)) = others.first() {
+        return Err(CommandError::UnknownKey { command: "fair", key: crate::words::shorten(key), known: "at" });
+    }
+    let most = |n: &u32| *n <= MOST_ITERATIONS;
+    let iterations = u32::try_from(iterations).ok().filter(most).ok_or(CommandError::Iterations(iterations))?;
+    Ok(Fairing { at, iterations })
+}
+
 /// The words for what was set.
 fn write(info: &Info, params: &Params) -> Vec<(String, String)> {
     let set = info.params.iter().enumerate().filter_map(|(at, p)| Some((p, params.get(at)?)));
@@ -40,8 +70,17 @@ fn write(info: &Info, params: &Params) -> Vec<(String, String)> {
 
 /// The command that chooses the scheme of a plan, parameters and all.
 pub fn command(plan: &Plan) -> Command {
-    let info = &plan.scheme.info;
-    Command::Scheme { id: info.id.to_owned(), parameters: write(info, &plan.params) }
+    run_command(&plan.run(0))
+}
+
+/// The command that lets a scheme take over, parameters and all.
+pub(crate) fn run_command(run: &Run) -> Command {
+    let info = &run.scheme.info;
+    let mut parameters = write(info, &run.params);
+    if run.from > 0 {
+        parameters.insert(0, ("from".to_owned(), run.from.to_string()));
+    }
+    Command::Scheme { id: info.id.to_owned(), parameters }
 }
 
 /// The command that sets parameter `at` of a plan's scheme and keeps the others, up to the value, which has to follow.

@@ -7,12 +7,10 @@ use std::sync::Arc;
 
 use limn_formats::Model;
 use limn_formats::parcel::Notice;
-use limn_mesh::{
-    Accepts, Boundary, Entry, Fairing, Job, Mesh, Params, Plan, RefineError, Rules, Run, Weld, predict, scheme,
-};
+use limn_mesh::{Accepts, Entry, Fairing, Job, Mesh, Params, Plan, RefineError, Rules, Run, Weld, predict, scheme};
 
 use crate::build::{Base, BuildError, Built, Edit, Remark};
-use crate::command::Command;
+use crate::command::{Command, CreaseWhere};
 use crate::error::CommandError;
 use crate::parameters;
 use crate::source::Source;
@@ -109,12 +107,84 @@ impl State {
             Edit::Triangulate => Command::Triangulate,
             Edit::Center => Command::Center,
             Edit::Scale(factor) => Command::Scale(*factor),
+            Edit::Crease(place, sharpness) => Command::Crease { place: place.clone(), sharpness: *sharpness },
+            Edit::Corner(vertex, sharpness) => Command::Corner { vertex: *vertex, sharpness: *sharpness },
+            Edit::Hole(face) => Command::Hole(*face),
+            Edit::Knot(ends, both, interval) => Command::Knot { ends: *ends, both: *both, interval: *interval },
         }));
-        commands.push(parameters::command(&self.plan()));
-        commands.extend((s.rules.boundary != Boundary::default()).then_some(Command::Boundary(s.rules.boundary)));
+        let plan = self.plan();
+        commands.push(parameters::command(&plan));
+        commands.extend(s.later.iter().map(parameters::run_command));
+        commands.extend(s.fairings.iter().map(|f| Command::Fair {
+            iterations: f.iterations as i32,
+            parameters: if f.at > 0 { vec![("at".to_owned(), f.at.to_string())] } else { Vec::new() },
+        }));
+        let (rules, default) = (s.rules, Rules::default());
+        commands.extend((rules.boundary != default.boundary).then_some(Command::Boundary(rules.boundary)));
+        commands.extend((rules.decay != default.decay).then_some(Command::CreaseDecay(rules.decay)));
+        commands.extend((rules.triangle != default.triangle).then_some(Command::TriangleRule(rules.triangle)));
+        commands
+            .extend((rules.face_varying != default.face_varying).then_some(Command::FaceVarying(rules.face_varying)));
         commands.extend(s.limit.then_some(Command::Limit(true)));
         commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
         commands
+    }
+}
+
+impl Settings {
+    /// Lets a scheme take over: all steps from its first on are its own. The scheme that is there already is given other
+    /// parameters, and what comes after it stays.
+    pub fn set_scheme(&mut self, run: Run) {
+        let same = |from: u32, scheme: &Entry| from == run.from && *scheme == *run.scheme;
+        if run.from == 0 {
+            if !same(0, self.scheme) {
+                self.later.clear();
+            }
+            (self.scheme, self.params) = (run.scheme, run.params);
+        } else if let Some(there) = self.later.iter_mut().find(|r| same(r.from, r.scheme)) {
+            there.params = run.params;
+        } else {
+            self.later.retain(|r| r.from < run.from);
+            self.later.push(run);
+        }
+        // A scheme does not take over from itself.
+        let mut before = (self.scheme, self.params);
+        self.later.retain(|r| std::mem::replace(&mut before, (r.scheme, r.params)) != (r.scheme, r.params));
+    }
+
+    /// Fairs a level so, in place of how it was faired.
+    pub fn set_fairing(&mut self, fairing: Fairing) {
+        self.fairings.retain(|f| f.at != fairing.at);
+        if fairing.iterations > 0 {
+            let at = self.fairings.partition_point(|f| f.at < fairing.at);
+            self.fairings.insert(at, fairing);
+        }
+    }
+}
+
+/// What a command names has to be there.
+impl State {
+    pub fn check_vertex(&self, index: u32) -> Result<(), CommandError> {
+        let count = self.base.polygons.soup(&self.model).positions.len();
+        if (index as usize) < count { Ok(()) } else { Err(CommandError::NoElement { what: "vertex", index, count }) }
+    }
+
+    pub fn check_face(&self, index: u32) -> Result<(), CommandError> {
+        let count = self.base.polygons.soup(&self.model).face_count();
+        if (index as usize) < count { Ok(()) } else { Err(CommandError::NoElement { what: "face", index, count }) }
+    }
+
+    pub fn check_crease(&self, place: &CreaseWhere) -> Result<(), CommandError> {
+        let CreaseWhere::Chain(vertices) = place else { return Ok(()) };
+        for two in vertices.windows(2) {
+            let &[a, b] = two else { continue };
+            self.check_vertex(a)?;
+            self.check_vertex(b)?;
+            if self.base.polygons.mesh.edge_between(a, b).is_none() {
+                return Err(CommandError::NoEdge(a, b));
+            }
+        }
+        Ok(())
     }
 }
 

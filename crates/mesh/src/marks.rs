@@ -10,9 +10,10 @@
 //! An array stays empty while nothing is marked, which is what rules ask first. Cost: linear where there are marks, plus the
 //! valence for each.
 
+use crate::mesh::Mesh;
 use crate::report::Note;
 use crate::soup::{Marks, NONE};
-use crate::topology::{Connectivity, Topology};
+use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// From this sharpness on an edge or vertex is infinitely sharp: it never softens.
 pub const INFINITE: f32 = 10.0;
@@ -97,9 +98,15 @@ pub(crate) fn resolve(
         lose(found, ends);
     }
     if !marks.holes.is_empty() {
-        let mut hole = vec![false; face_source.iter().max().map_or(0, |&f| f as usize + 1)];
-        marks.holes.iter().for_each(|&f| hole.get_mut(f as usize).into_iter().for_each(|h| *h = true));
-        let holes: Vec<bool> = face_source.iter().map(|&f| hole[f as usize]).collect();
+        let mut holes = vec![false; face_source.len()];
+        for &f in &marks.holes {
+            // Faces that were left out leave the others in order.
+            let found = face_source.binary_search(&f);
+            if let Ok(face) = found {
+                holes[face] = true;
+            }
+            lose(found.is_ok(), [f, NONE]);
+        }
         if holes.contains(&true) {
             out.holes = holes;
         }
@@ -117,6 +124,56 @@ pub(crate) fn resolve(
         notes.push(Note::LostMarks { count: lost.0, first: lost.1 });
     }
     out
+}
+
+impl Mesh {
+    /// The edge between two positions of the soup, whichever of their copies it joins. Cost: linear.
+    pub fn edge_between(&self, a: u32, b: u32) -> Option<u32> {
+        let class = |p: u32| self.weld_class.get(p as usize).copied();
+        let (a, b, t) = (class(a)?, class(b)?, &self.topology);
+        let half_edge = (0..t.half_edges()).find(|&h| {
+            let at = |h: u32| self.vertex_source[t.origin(h) as usize];
+            let (from, to) = (at(h), at(t.next(h)));
+            (from, to) == (a, b) || (from, to) == (b, a)
+        });
+        half_edge.map(|h| t.edge(h))
+    }
+
+    /// The edges whose two faces' normals are more than `degrees` apart, by positions of the soup. Cost: linear.
+    pub fn edges_bent_by_more(&self, degrees: f64) -> Vec<[u32; 2]> {
+        let t = &self.topology;
+        let limit = libm::cos(degrees.to_radians());
+        let normals: Vec<[f64; 3]> = (0..t.faces()).map(|f| self.face_normal(f)).collect();
+        let bent = |&e: &u32| {
+            let h = t.edge_half_edge(e);
+            let twin = t.twin(h);
+            if is_boundary(twin) {
+                return false;
+            }
+            let (n, m) = (normals[t.face(h) as usize], normals[t.face(twin) as usize]);
+            n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < limit - 1e-9
+        };
+        let ends = |e: u32| {
+            let h = t.edge_half_edge(e);
+            [t.origin(h), t.origin(t.next(h))].map(|v| self.vertex_source[v as usize])
+        };
+        (0..t.edges()).filter(bent).map(ends).collect()
+    }
+
+    /// The unit normal of a face, by Newell's sum; zeros where it has none.
+    fn face_normal(&self, f: u32) -> [f64; 3] {
+        let t = &self.topology;
+        let mut n = [0.0; 3];
+        for h in t.face_half_edges(f) {
+            let [p, q] = [h, t.next(h)].map(|h| self.positions[t.origin(h) as usize].map(f64::from));
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                n[k] += (p[i] - q[i]) * (p[j] + q[j]);
+            }
+        }
+        let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        if length > 0.0 { n.map(|x| x / length) } else { [0.0; 3] }
+    }
 }
 
 /// `values`, made as long as they have to be first.

@@ -349,6 +349,7 @@ impl<'a> Matching<'a> {
 /// The soup with the chosen pairs joined.
 fn rebuild(soup: &Soup, pairs: &[Pair], chosen: &[u32]) -> Soup {
     let mut result = soup.vertices_only();
+    let is_hole = soup.is_hole();
     for (f, &choice) in chosen.iter().enumerate() {
         let mut corners: Vec<usize> = soup.face_range(f).collect();
         if let Some(pair) = pairs.get(choice as usize) {
@@ -358,6 +359,10 @@ fn rebuild(soup: &Soup, pairs: &[Pair], chosen: &[u32]) -> Soup {
             // The second triangle's far corner goes in between the ends of the shared edge.
             let far = soup.face_range(pair.faces[1] as usize).start + (pair.corners[1] as usize + 2) % 3;
             corners.insert(pair.corners[0] as usize + 1, far);
+        }
+        let partner = pairs.get(choice as usize).map_or(f, |pair| pair.faces[1] as usize);
+        if is_hole.get(f) == Some(&true) || is_hole.get(partner) == Some(&true) {
+            result.marks.holes.push(result.face_count() as u32);
         }
         let positions: Vec<u32> = corners.iter().filter_map(|&c| soup.corners.get(c).copied()).collect();
         result.push_face(&positions);

@@ -62,11 +62,11 @@ pub enum Note {
         /// The first.
         first: u32,
     },
-    /// Creases, corners or knots at places where there is no such edge or vertex.
+    /// Creases, corners, knots or holes at places where there is no such edge, vertex or face.
     LostMarks {
         /// How many.
         count: u64,
-        /// The first, by its two positions (twice the same for a corner).
+        /// The first, by its two positions (twice the same for a corner; a face's number and [`crate::NONE`] for a hole).
         first: [u32; 2],
     },
     /// Edges cut because the surface has one side only.
@@ -106,13 +106,12 @@ impl fmt::Display for Note {
                 )
             }
             Note::LostMarks { count, first: [a, b] } => {
-                let place = if a == b { format!("vertex {a}") } else { format!("edge {a}-{b}") };
-                write!(
-                    f,
-                    "{count} crease{} or corner{} at no edge or vertex (first: {place}) left out",
-                    s(count),
-                    s(count)
-                )
+                let place = match *b {
+                    crate::NONE => format!("face {a}"),
+                    _ if a == b => format!("vertex {a}"),
+                    _ => format!("edge {a}-{b}"),
+                };
+                write!(f, "{count} mark{} on what the model does not have (first: {place}) left out", s(count))
             }
             Note::OneSided { count, first: [a, b] } => {
                 write!(f, "the surface has one side only; cut along {count} edge{} (first: {a}-{b})", s(count))

@@ -89,6 +89,18 @@ impl Soup {
         self.offsets.push(self.corners.len() as u32);
     }
 
+    /// Whether each face is a hole; empty if none is.
+    pub fn is_hole(&self) -> Vec<bool> {
+        if self.marks.holes.is_empty() {
+            return Vec::new();
+        }
+        let mut is_hole = vec![false; self.face_count()];
+        for &f in &self.marks.holes {
+            is_hole.get_mut(f as usize).into_iter().for_each(|hole| *hole = true);
+        }
+        is_hole
+    }
+
     /// How many faces there are.
     pub fn face_count(&self) -> usize {
         self.offsets.len().saturating_sub(1)

@@ -85,11 +85,13 @@ pub fn triangulate_soup(soup: &Soup) -> (Soup, usize) {
     let mut result = soup.vertices_only();
     let mut triangles = Vec::new();
     let mut split = 0;
+    let is_hole = soup.is_hole();
     for f in 0..soup.face_count() {
         let range = soup.face_range(f);
         let corners = soup.corners.get(range.clone()).unwrap_or(&[]);
         let uvs = soup.uv_corners.get(range).unwrap_or(&[]);
         let mut pieces = 1;
+        let first = result.face_count() as u32;
         if corners.len() > 3 {
             split += 1;
             triangulate(&soup.positions, corners, &mut triangles);
@@ -103,6 +105,9 @@ pub fn triangulate_soup(soup: &Soup) -> (Soup, usize) {
         } else {
             result.push_face(corners);
             result.uv_corners.extend_from_slice(uvs);
+        }
+        if is_hole.get(f) == Some(&true) {
+            result.marks.holes.extend(first..first + pieces as u32);
         }
         if let Some(&group) = soup.face_groups.get(f) {
             result.face_groups.extend(std::iter::repeat_n(group, pieces));

@@ -219,7 +219,7 @@ fn marks_find_their_places() {
     assert_eq!((knots(5, 6), knots(1, 3)), ([0.5, 0.25], [1.0, 1.0]));
     let notes: Vec<_> = report.notes.iter().map(ToString::to_string).collect();
     assert!(
-        notes.contains(&"2 creases or corners at no edge or vertex (first: edge 1-4) left out".to_owned()),
+        notes.contains(&"2 marks on what the model does not have (first: edge 1-4) left out".to_owned()),
         "{notes:?}"
     );
     // Copies of a vertex on a cut edge share its marks.

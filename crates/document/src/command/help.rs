@@ -1,7 +1,8 @@
 //! What the table tells people: the text of `help`, and what can be typed next.
 
 use super::parse::parse_words;
-use super::table::{COMMANDS, Keys, spec};
+use super::rows::COMMANDS;
+use super::table::{Keys, spec};
 use crate::view::VIEW_KEYS;
 use crate::words;
 

@@ -17,15 +17,17 @@
 
 mod help;
 mod parse;
+mod rows;
 mod table;
 
 use std::fmt;
 
-use limn_mesh::{Boundary, Weld};
+use limn_mesh::{Boundary, Decay, FaceVarying, TriangleRule, Weld};
 
 pub use help::{complete, help};
 pub use parse::{ParseError, parse_all, parse_script, parse_words};
-pub use table::{Arg, COMMANDS, Class, Keys, Kind, Parsed, Spec, Value, spec};
+pub use rows::COMMANDS;
+pub use table::{Arg, Class, Keys, Kind, Parsed, Spec, Value, spec};
 
 use crate::source::Source;
 use crate::view::ViewSet;
@@ -56,10 +58,48 @@ pub enum Command {
         /// What stands behind it as `key=value`, in order.
         parameters: Vec<(String, String)>,
     },
+    /// Fair a level.
+    Fair {
+        /// How many iterations.
+        iterations: i32,
+        /// What stands behind it as `key=value`.
+        parameters: Vec<(String, String)>,
+    },
+    /// Make edges sharp or smooth.
+    Crease {
+        /// Which.
+        place: CreaseWhere,
+        /// 0 or more.
+        sharpness: f32,
+    },
+    /// Make a vertex sharp or smooth.
+    Corner {
+        /// Which, in the file's numbers.
+        vertex: u32,
+        /// 0 or more.
+        sharpness: f32,
+    },
+    /// Refine a face and do not show it.
+    Hole(u32),
+    /// Set a knot interval.
+    Knot {
+        /// The edge, in the file's numbers.
+        ends: [u32; 2],
+        /// Whether it is set at both ends, or at the first.
+        both: bool,
+        /// 0 or more.
+        interval: f32,
+    },
     /// What happens at the rim.
     Boundary(Boundary),
     /// Move the level's points to the limit.
     Limit(bool),
+    /// How creases soften.
+    CreaseDecay(Decay),
+    /// What Catmull-Clark makes of triangles.
+    TriangleRule(TriangleRule),
+    /// What seams do to texture coordinates.
+    FaceVarying(FaceVarying),
     /// Refine so many times.
     Level(i32),
     /// Change how the model is shown; in order, never empty.
@@ -86,6 +126,17 @@ pub enum Command {
     Help(Option<&'static str>),
 }
 
+/// Which edges a crease is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CreaseWhere {
+    /// Those between these vertices, one after the other, in the file's numbers; two at least.
+    Chain(Vec<u32>),
+    /// Those whose faces' normals are more than so many degrees apart, 0 to 180.
+    Angle(f32),
+    /// All that are sharp, which become smooth.
+    Everywhere,
+}
+
 impl Command {
     /// The word that it begins with.
     pub fn name(&self) -> &'static str {
@@ -97,8 +148,16 @@ impl Command {
             Command::Center => "center",
             Command::Scale(_) => "scale",
             Command::Scheme { .. } => "scheme",
+            Command::Fair { .. } => "fair",
+            Command::Crease { .. } => "crease",
+            Command::Corner { .. } => "corner",
+            Command::Hole(_) => "hole",
+            Command::Knot { .. } => "knot",
             Command::Boundary(_) => "boundary",
             Command::Limit(_) => "limit",
+            Command::CreaseDecay(_) => "crease-decay",
+            Command::TriangleRule(_) => "triangle-rule",
+            Command::FaceVarying(_) => "face-varying",
             Command::Level(_) => "level",
             Command::View(_) => "view",
             Command::Info { .. } => "info",
@@ -131,6 +190,31 @@ impl fmt::Display for Command {
                 write!(f, " {id}")?;
                 parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
             }
+            Command::Fair { iterations, parameters } => {
+                write!(f, " taubin {iterations}")?;
+                parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
+            }
+            Command::Crease { place, sharpness } => {
+                match place {
+                    CreaseWhere::Chain(vertices) => {
+                        let words: Vec<String> = vertices.iter().map(u32::to_string).collect();
+                        write!(f, " {}", words.join("-"))?;
+                    }
+                    CreaseWhere::Angle(degrees) => write!(f, " angle {degrees}")?,
+                    CreaseWhere::Everywhere => return f.write_str(" none"),
+                }
+                write!(f, " {sharpness}")
+            }
+            Command::Corner { vertex, sharpness } => write!(f, " {vertex} {sharpness}"),
+            Command::Hole(face) => write!(f, " {face}"),
+            Command::Knot { ends: [a, b], both, interval } => {
+                write!(f, " {a}{}{b} {interval}", if *both { '=' } else { '-' })
+            }
+            Command::CreaseDecay(Decay::Uniform) => f.write_str(" uniform"),
+            Command::CreaseDecay(Decay::Chaikin) => f.write_str(" chaikin"),
+            Command::TriangleRule(TriangleRule::CatmullClark) => f.write_str(" catmull-clark"),
+            Command::TriangleRule(TriangleRule::Smooth) => f.write_str(" smooth"),
+            Command::FaceVarying(rule) => write!(f, " {}", rows::face_varying_word(*rule)),
             Command::Boundary(Boundary::EdgeOnly) => f.write_str(" edge-only"),
             Command::Boundary(Boundary::EdgeAndCorner) => f.write_str(" edge-and-corner"),
             Command::Level(n) | Command::Version(n) => write!(f, " {n}"),

@@ -10,7 +10,8 @@
 
 use std::str::FromStr;
 
-use super::table::{COMMANDS, Keys, Parsed, Spec, spec};
+use super::rows::COMMANDS;
+use super::table::{Keys, Parsed, Spec, spec};
 use super::{Command, table};
 use crate::view::{VIEW_KEYS, ViewSet};
 use crate::words::{self, WordError, shorten};

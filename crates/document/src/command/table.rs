@@ -6,9 +6,11 @@
 
 use std::fmt;
 
-use limn_mesh::{Boundary, SCHEMES, SHAPES, Weld};
+use limn_mesh::marks::INFINITE;
+use limn_mesh::{SCHEMES, SHAPES, Weld};
 
 use super::Command;
+use super::rows::COMMANDS;
 use crate::numbers::single;
 use crate::source::Source;
 use crate::view::{VIEW_KEYS, ViewSet};
@@ -57,6 +59,16 @@ pub enum Kind {
     File,
     /// The name of a command.
     Command,
+    /// Vertices joined by hyphens: `4-5-9`, at least two.
+    Chain,
+    /// [`Kind::Chain`], or one of these words.
+    ChainOr(&'static [&'static str]),
+    /// Two vertices: `4-5` for the end at the first, `4=5` for both ends.
+    Knot,
+    /// The number of a vertex or face, from 0.
+    Index,
+    /// A finite number greater than or equal to 0, or `inf`.
+    Sharpness,
 }
 
 /// An argument's value.
@@ -74,6 +86,23 @@ pub enum Value {
     Word(&'static str),
     /// Of [`Kind::File`] or [`Kind::Scheme`].
     Text(String),
+    /// Of [`Kind::Chain`].
+    Chain(Vec<u32>),
+    /// Of [`Kind::Knot`], with whether it is meant at both ends.
+    Knot([u32; 2], bool),
+    /// Of [`Kind::Index`].
+    Index(u32),
+}
+
+/// The vertices of `4-5-9`.
+fn chain(word: &str) -> Option<Vec<u32>> {
+    let vertices: Vec<u32> = word.split('-').map(index).collect::<Option<_>>()?;
+    (vertices.len() >= 2).then_some(vertices)
+}
+
+/// A number of an element: digits only.
+fn index(word: &str) -> Option<u32> {
+    (!word.starts_with('+')).then(|| word.parse().ok())?
 }
 
 impl Kind {
@@ -92,6 +121,18 @@ impl Kind {
             },
             Kind::File => (!word.is_empty()).then(|| Value::Text(word.to_owned())),
             Kind::Command => spec(word).map(|s| Value::Word(s.name)),
+            Kind::Chain => chain(word).map(Value::Chain),
+            Kind::ChainOr(words) => Kind::Word(words).read(word).or_else(|| Kind::Chain.read(word)),
+            Kind::Knot => {
+                let (a, both, b) = match word.split_once('-') {
+                    Some((a, b)) => (a, false, b),
+                    None => word.split_once('=').map(|(a, b)| (a, true, b))?,
+                };
+                Some(Value::Knot([index(a)?, index(b)?], both))
+            }
+            Kind::Index => index(word).map(Value::Index),
+            Kind::Sharpness if word == "inf" => Some(Value::Number(INFINITE)),
+            Kind::Sharpness => single(word).filter(|v| *v >= 0.0).map(Value::Number),
         }
     }
 
@@ -106,6 +147,11 @@ impl Kind {
             Kind::Weld => "exact, off, or a fraction of the bounding box greater than 0 and up to 0.1".into(),
             Kind::File => "a file name".into(),
             Kind::Command => "the name of a command".into(),
+            Kind::Chain => "vertices joined by hyphens, as in 4-5-9".into(),
+            Kind::ChainOr(words) => format!("{} or {}", words.join(" or "), Kind::Chain.expected()),
+            Kind::Knot => "two vertices, as in 4-5 or 4=5".into(),
+            Kind::Index => "a number from 0 up".into(),
+            Kind::Sharpness => "a number from 0 up, or inf".into(),
         }
     }
 
@@ -114,10 +160,11 @@ impl Kind {
         match self {
             Kind::Source => SHAPES.iter().map(|s| format!("builtin:{}", s.name)).collect(),
             Kind::Scheme => SCHEMES.iter().map(|s| s.info.id.to_owned()).collect(),
-            Kind::Word(words) => words.iter().map(|&w| w.to_owned()).collect(),
+            Kind::Word(words) | Kind::ChainOr(words) => words.iter().map(|&w| w.to_owned()).collect(),
             Kind::Weld => ["exact", "off"].map(str::to_owned).into(),
             Kind::Command => COMMANDS.iter().map(|s| s.name.to_owned()).collect(),
-            Kind::Whole | Kind::Positive | Kind::File => Vec::new(),
+            Kind::Sharpness => vec!["inf".to_owned()],
+            Kind::Whole | Kind::Positive | Kind::File | Kind::Chain | Kind::Knot | Kind::Index => Vec::new(),
         }
     }
 }
@@ -135,15 +182,15 @@ pub struct Arg {
     pub name: &'static str,
     /// What it has to be.
     pub kind: Kind,
-    /// Whether it may be left out. Only the last argument may.
+    /// Whether it may be left out. Only the last ones may.
     pub optional: bool,
 }
 
-const fn arg(name: &'static str, kind: Kind) -> Arg {
+pub(super) const fn arg(name: &'static str, kind: Kind) -> Arg {
     Arg { name, kind, optional: false }
 }
 
-const fn maybe(name: &'static str, kind: Kind) -> Arg {
+pub(super) const fn maybe(name: &'static str, kind: Kind) -> Arg {
     Arg { name, kind, optional: true }
 }
 
@@ -232,248 +279,6 @@ impl Spec {
         text
     }
 }
-
-const SWITCH: Kind = Kind::Word(&["on", "off"]);
-
-fn is_on(value: Option<Value>) -> Option<bool> {
-    match value? {
-        Value::Word(word) => Some(word == "on"),
-        _ => None,
-    }
-}
-
-/// Every command, in the order in which help lists them.
-pub static COMMANDS: &[Spec] = &[
-    Spec {
-        name: "open",
-        class: Class::Model,
-        args: &[arg("SOURCE", Kind::Source)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "open a model: builtin:NAME, file:NAME,SIZE,HASH or a web address",
-        detail: "Models of triangles open in Loop, others in Catmull-Clark, at level 0.",
-        example: "open builtin:cube",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Source(source) => Some(Command::Open(source)),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "weld",
-        class: Class::Setting,
-        args: &[arg("HOW", Kind::Weld)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "which vertices of the file are one: those in the same place, those nearer than EPS, or none",
-        detail: "EPS is a fraction of the bounding box's diagonal. At first as the format needs it: exact for glTF, off for OBJ.",
-        example: "weld exact",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Weld(weld) => Some(Command::Weld(weld)),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "quads",
-        class: Class::Setting,
-        args: &[arg("SWITCH", SWITCH)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "pair triangles back to quads",
-        detail: "Turned on while the scheme is one for triangles, it changes that to catmull-clark.",
-        example: "quads on",
-        build: |p| Some(Command::Quads(is_on(p.values.into_iter().next())?)),
-    },
-    Spec {
-        name: "triangulate",
-        class: Class::Model,
-        args: &[],
-        flags: &[],
-        keys: Keys::None,
-        summary: "split every face into triangles by its shortest diagonals",
-        detail: "",
-        example: "triangulate",
-        build: |_| Some(Command::Triangulate),
-    },
-    Spec {
-        name: "center",
-        class: Class::Model,
-        args: &[],
-        flags: &[],
-        keys: Keys::None,
-        summary: "move the middle of the bounding box to the origin",
-        detail: "",
-        example: "center",
-        build: |_| Some(Command::Center),
-    },
-    Spec {
-        name: "scale",
-        class: Class::Model,
-        args: &[maybe("S", Kind::Positive)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "multiply all coordinates by S",
-        detail: "Without S the longest side of the bounding box becomes 1.",
-        example: "scale 2.5",
-        build: |p| match p.values.into_iter().next() {
-            Some(Value::Number(s)) => Some(Command::Scale(Some(s))),
-            None => Some(Command::Scale(None)),
-            Some(_) => None,
-        },
-    },
-    Spec {
-        name: "scheme",
-        class: Class::Setting,
-        args: &[arg("ID", Kind::Scheme)],
-        flags: &[],
-        keys: Keys::Parameters,
-        summary: "choose the subdivision scheme",
-        detail: "A scheme for triangles triangulates other faces first, and the report says so. What a scheme lets one set follows as \
-                 KEY=VALUE; what is not named has its default.",
-        example: "scheme loop weights=warren",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Text(id) => Some(Command::Scheme { id, parameters: p.parameters }),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "boundary",
-        class: Class::Setting,
-        args: &[arg("RULE", Kind::Word(&["edge-only", "edge-and-corner"]))],
-        flags: &[],
-        keys: Keys::None,
-        summary: "smooth the rim of an open model everywhere, or keep its corners",
-        detail: "",
-        example: "boundary edge-only",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Word("edge-only") => Some(Command::Boundary(Boundary::EdgeOnly)),
-            Value::Word(_) => Some(Command::Boundary(Boundary::EdgeAndCorner)),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "limit",
-        class: Class::Setting,
-        args: &[arg("SWITCH", SWITCH)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "move the level's vertices to where endless refinement takes them, and shade with that surface's normals",
-        detail: "Faces stay those of the level. Schemes that go through their vertices change the normals only; linear ones nothing.",
-        example: "limit on",
-        build: |p| Some(Command::Limit(is_on(p.values.into_iter().next())?)),
-    },
-    Spec {
-        name: "level",
-        class: Class::Setting,
-        args: &[arg("N", Kind::Whole)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "show the model refined N times; 0 is the model itself",
-        detail: "A level that does not fit the memory budget is refused with its predicted counts.",
-        example: "level 3",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Whole(n) => Some(Command::Level(n)),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "view",
-        class: Class::View,
-        args: &[],
-        flags: &[],
-        keys: Keys::View,
-        summary: "change how the model is shown",
-        detail: "",
-        example: "view edges=bold shading=flat camera=front",
-        build: |p| Some(Command::View(p.view)),
-    },
-    Spec {
-        name: "info",
-        class: Class::Action,
-        args: &[],
-        flags: &["--json"],
-        keys: Keys::None,
-        summary: "count vertices, edges and faces, and tell what the surface is like",
-        detail: "With --json as one JSON object.",
-        example: "info --json",
-        build: |p| Some(Command::Info { json: p.flags.contains(&"--json") }),
-    },
-    Spec {
-        name: "export",
-        class: Class::Action,
-        args: &[arg("FILE", Kind::File)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "write the present level to FILE.obj or FILE.glb",
-        detail: "",
-        example: "export out.obj",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Text(file) => Some(Command::Export { file }),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "undo",
-        class: Class::Action,
-        args: &[],
-        flags: &[],
-        keys: Keys::None,
-        summary: "take back the last change of the model or of a setting",
-        detail: "",
-        example: "undo",
-        build: |_| Some(Command::Undo),
-    },
-    Spec {
-        name: "redo",
-        class: Class::Action,
-        args: &[],
-        flags: &[],
-        keys: Keys::None,
-        summary: "do again what was taken back last",
-        detail: "",
-        example: "redo",
-        build: |_| Some(Command::Redo),
-    },
-    Spec {
-        name: "reload",
-        class: Class::Action,
-        args: &[],
-        flags: &[],
-        keys: Keys::None,
-        summary: "read the file again and keep everything done to it",
-        detail: "",
-        example: "reload",
-        build: |_| Some(Command::Reload),
-    },
-    Spec {
-        name: "version",
-        class: Class::Action,
-        args: &[arg("N", Kind::Whole)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "say which version of these commands a script is written in",
-        detail: "The present one is 1, which a script without this line is taken for.",
-        example: "version 1",
-        build: |p| match p.values.into_iter().next()? {
-            Value::Whole(n) => Some(Command::Version(n)),
-            _ => None,
-        },
-    },
-    Spec {
-        name: "help",
-        class: Class::Action,
-        args: &[maybe("COMMAND", Kind::Command)],
-        flags: &[],
-        keys: Keys::None,
-        summary: "list the commands, or explain one",
-        detail: "",
-        example: "help level",
-        build: |p| match p.values.into_iter().next() {
-            Some(Value::Word(name)) => Some(Command::Help(Some(name))),
-            None => Some(Command::Help(None)),
-            Some(_) => None,
-        },
-    },
-];
 
 /// The row of the command with this name.
 pub fn spec(name: &str) -> Option<&'static Spec> {
