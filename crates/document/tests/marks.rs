@@ -53,7 +53,7 @@ fn creases_and_corners() {
         };
         let mut all: Vec<([u32; 2], f32)> =
             mesh.edge_sharpness.iter().enumerate().filter(|e| *e.1 > 0.0).map(|(e, s)| (ends(e as u32), *s)).collect();
-        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.sort_by_key(|edge| edge.0);
         all
     };
     assert_eq!(sharp(&d), [([0, 1], 2.5)]);

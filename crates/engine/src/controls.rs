@@ -2,7 +2,8 @@
 //!
 //! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
 
-use limn_document::{Document, ViewSet, parameters};
+use limn_document::{Command, Document, ViewSet, parameters};
+use limn_mesh::marks::INFINITE;
 use limn_mesh::{Boundary, Domain, LimitRule, Weld};
 use serde::{Serialize, Serializer};
 
@@ -151,6 +152,56 @@ pub static CONTROLS: &[Control] = &[
         "Vertices where endless refinement takes them, and its light"
     ),
     Control {
+        id: "creases",
+        tab: "surface",
+        label: "Creases",
+        help: "Keep edges sharp where faces meet at an angle; the console has `crease` and `corner` for single ones",
+        kind: "actions",
+        choices: &[
+            choice("30", "Over 30°", "crease angle 30 10"),
+            choice("60", "Over 60°", "crease angle 60 10"),
+            choice("soft", "Over 60°, soft", "crease angle 60 2"),
+            choice("none", "None", "crease none"),
+        ],
+    },
+    Control {
+        id: "crease-decay",
+        tab: "surface",
+        label: "Creases soften",
+        help: "How semi-sharp creases soften from level to level: by one, or evened out along the crease first",
+        kind: "choice",
+        choices: &[
+            choice("uniform", "Evenly", "crease-decay uniform"),
+            choice("chaikin", "Along the crease", "crease-decay chaikin"),
+        ],
+    },
+    Control {
+        id: "triangle-rule",
+        tab: "surface",
+        label: "Triangles",
+        help: "What Catmull–Clark makes of triangles: the same as of other polygons, or something smoother",
+        kind: "choice",
+        choices: &[
+            choice("catmull-clark", "As polygons", "triangle-rule catmull-clark"),
+            choice("smooth", "Smoother", "triangle-rule smooth"),
+        ],
+    },
+    Control {
+        id: "face-varying",
+        tab: "surface",
+        label: "Texture seams",
+        help: "Where texture coordinates stay linear: nowhere, at corners and junctions, along whole seams, or everywhere",
+        kind: "choice",
+        choices: &[
+            choice("none", "Smooth", "face-varying none"),
+            choice("corners-only", "Corners", "face-varying corners-only"),
+            choice("corners-plus1", "+ junctions", "face-varying corners-plus1"),
+            choice("corners-plus2", "+ darts", "face-varying corners-plus2"),
+            choice("boundaries", "Seams", "face-varying boundaries"),
+            choice("all", "Linear", "face-varying all"),
+        ],
+    },
+    Control {
         id: "weld",
         tab: "surface",
         label: "Join vertices",
@@ -222,6 +273,15 @@ pub fn values(document: &Document) -> Values {
         };
         values.push(("boundary", rule.to_owned()));
         values.push(("limit", on(plan.limit)));
+        let rules = [
+            Command::CreaseDecay(plan.rules.decay),
+            Command::TriangleRule(plan.rules.triangle),
+            Command::FaceVarying(plan.rules.face_varying),
+        ];
+        values.extend(rules.iter().map(|rule| {
+            let word = rule.to_string().split(' ').nth(1).unwrap_or_default().to_owned();
+            (rule.name(), word)
+        }));
     }
     Values(values)
 }
@@ -278,10 +338,20 @@ pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     if document.plan().is_some_and(|p| p.scheme.limit == LimitRule::Itself) {
         rows.push("limit");
     }
+    if mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness).all(|&s| s == 0.0 || s >= INFINITE) {
+        rows.push("crease-decay");
+    }
+    if mesh.uv.is_none() {
+        rows.push("face-varying");
+    }
     let paired = document.reading().is_some_and(|(quads, _)| quads);
     let triangles = model.soup.offsets.windows(2).any(|w| matches!(w, &[a, b] if b - a == 3));
     if !paired && !triangles {
         rows.push("quads");
+    }
+    let catmull_clark = document.plan().is_some_and(|p| p.scheme.info.id == "catmull-clark");
+    if !(catmull_clark && triangles) {
+        rows.push("triangle-rule");
     }
     rows
 }
@@ -366,11 +436,17 @@ mod tests {
     fn rows_that_make_no_difference_are_off() {
         let mut document = Document::new(1 << 30);
         document.run("open builtin:cube").unwrap();
-        assert_eq!(disabled(&document, false), ["textures", "colors", "boundary", "quads"]);
+        assert_eq!(
+            disabled(&document, false),
+            ["textures", "colors", "boundary", "crease-decay", "face-varying", "quads", "triangle-rule"]
+        );
         document.run("open builtin:pawn").unwrap();
-        assert_eq!(disabled(&document, true), ["textures", "colors"]);
+        assert_eq!(disabled(&document, true), ["textures", "colors", "crease-decay", "face-varying", "triangle-rule"]);
         document.run("scheme linear").unwrap();
-        assert_eq!(disabled(&document, true), ["textures", "colors", "limit"]);
+        assert!(disabled(&document, true).contains(&"limit"));
+        document.run("scheme catmull-clark").unwrap();
+        document.run("crease angle 30 2").unwrap();
+        assert_eq!(disabled(&document, true), ["textures", "colors", "face-varying"]);
     }
 
     #[test]

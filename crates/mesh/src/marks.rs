@@ -166,9 +166,9 @@ impl Mesh {
         let mut n = [0.0; 3];
         for h in t.face_half_edges(f) {
             let [p, q] = [h, t.next(h)].map(|h| self.positions[t.origin(h) as usize].map(f64::from));
-            for k in 0..3 {
+            for (k, sum) in n.iter_mut().enumerate() {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                n[k] += (p[i] - q[i]) * (p[j] + q[j]);
+                *sum += (p[i] - q[i]) * (p[j] + q[j]);
             }
         }
         let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
