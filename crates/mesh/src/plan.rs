@@ -91,13 +91,15 @@ impl Plan {
         FULL || self.is_common(mesh)
     }
 
-    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, or the mesh
-    /// itself. A build without the feature `full` has the code for these; the one place to say so of something new.
+    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, colours and
+    /// texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
+    /// place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
         let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
         let plain = self.scheme.common && self.later.is_empty();
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
-        closed && (self.level == 0 || (plain && smooth))
+        let bare = mesh.colors.is_empty() && mesh.uv.is_none();
+        closed && (self.level == 0 || (plain && smooth && bare))
     }
 
     /// The run that makes step `step`.

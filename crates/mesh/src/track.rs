@@ -142,7 +142,11 @@ impl Track {
             (_, false) => mesh.colors.clone(),
         };
         let dropped = steps.iter().any(|s| !s.split.keeps_corners());
-        let idle = if uv { plan.level == 0 || mesh.uv.is_none() || dropped } else { plan.level == 0 && !plan.closes() };
+        let idle = if uv {
+            !FULL || plan.level == 0 || mesh.uv.is_none() || dropped
+        } else {
+            plan.level == 0 && !plan.closes()
+        };
         let mut track = Track {
             uv,
             level: 0,
@@ -169,13 +173,13 @@ impl Track {
             knots: Vec::new(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
-        if let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
+        if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
             track.pins = face_varying::pins(mesh, channel, &plan.rules);
         }
         if !idle {
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
-        if !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
+        if FULL && !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
             track.corner = plan.kept(mesh);
         }
         track
@@ -185,7 +189,7 @@ impl Track {
     fn begin(&mut self, level: &Level<'_>, plan: &Plan, steps: &[Step]) {
         let step = steps.get(self.level as usize);
         self.lone = step.map_or_else(Vec::new, |s| s.split.lone(level));
-        if self.uv && plan.rules.face_varying == FaceVarying::Boundaries {
+        if FULL && self.uv && plan.rules.face_varying == FaceVarying::Boundaries {
             face_varying::pin_boundary(level, &mut self.pins);
         }
         self.stage = match step {
@@ -292,7 +296,7 @@ impl Track {
                 }
             }
             Stage::Wide(cursor) => {
-                let mut done = self.wide.is_empty();
+                let mut done = !FULL || self.wide.is_empty();
                 if !done {
                     zeroed(&mut self.new_wide, children);
                     let (old, new) = (&self.wide, &mut self.new_wide);

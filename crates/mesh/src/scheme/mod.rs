@@ -265,14 +265,13 @@ impl PartialEq for Entry {
 }
 
 /// Compiles a scheme into an entry: for every connectivity that it can meet, at full speed, and once for recording. A build
-/// without the feature `full` has no rules of rare schemes: nothing refers to them, so nothing is compiled.
+/// without the feature `full` has no rules of rare schemes, and no rows: nothing refers to them, so nothing is compiled.
 const fn entry<S: Scheme>() -> Entry {
-    let (eval, record): (EvalFn, RecordFn) = if S::COMMON || crate::FULL {
-        (eval::<S>, record::<S>)
-    } else {
-        // `Plan::is_here` says no, and whoever refines asks it first.
-        (|_, _, _, _| (), |_, _, _, _| ())
-    };
+    // Where there is nothing, `Plan::is_here` says no, and whoever refines asks it first.
+    let eval: EvalFn =
+        if S::COMMON || crate::FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
+    let record: RecordFn =
+        if crate::FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
     Entry { info: S::INFO, common: S::COMMON, limit: S::LIMIT, eval, record }
 }
 
