@@ -26,9 +26,9 @@
 //!         b0-P1-P2-b1
 //! ```
 //!
-//! Cost: linear. Twins are arithmetic for sqrt3; dual matches sides by counting sort, as level 0 does.
+//! Cost: linear. Twins are arithmetic.
 
-use crate::connect;
+use crate::connect::UNMATCHED;
 use crate::topology::{Connectivity, Topology, boundary_rank, is_boundary};
 
 /// What a child face was made from.
@@ -73,12 +73,57 @@ impl Cut {
         let mate = match split {
             super::Split::Sqrt3 { trisect } => mates(parent, trisect),
             super::Split::Mixed => super::mixed::mates(parent),
-            _ => {
-                let (mut corners, mut slots) = (self.corners.clone(), Vec::new());
-                connect::connect(&self.offsets, &mut corners, &mut slots, vertices as usize).mate
-            }
+            _ => self.dual_mates(parent, &split.lone(parent)),
         };
-        Topology::assemble(self.offsets.clone(), &self.corners, vertices as usize, &mate).0
+        Topology::manifold(self.offsets.clone(), self.corners.clone(), vertices, mate)
+    }
+}
+
+impl Cut {
+    /// The twins of [`dual`]'s faces, from their corners alone, which are half-edges of the parent.
+    ///
+    /// ```text
+    ///     | v-face |           the e-face of h and its twin t has the corners n(h) h n(t) t: its sides 0 and 2 lie along
+    ///   - g ------ h_i -       the sides h and t of two f-faces, side 1 along the v-face where h begins and 3 where t does.
+    ///     | e-face |           So a v-face's side to corner g lies along the side that follows, in its e-face, the one
+    ///   - . ------ . ---       along g.
+    ///     | f-face |
+    /// ```
+    fn dual_mates(&self, parent: &Topology, lone: &[u32]) -> Vec<u32> {
+        let mut mate = vec![UNMATCHED; self.corners.len()];
+        // The f-face's side along half-edge h: behind the second image where h leaves a rounded corner.
+        let along = |h: u32| if lone.is_empty() { h } else { h + lone.partition_point(|&l| l <= h) as u32 };
+        let first_edge = parent.half_edges() + lone.len() as u32;
+        let edges = parent.edges() - parent.boundary_half_edges();
+        let first_vertex = first_edge + 4 * edges;
+        let join = |mate: &mut Vec<u32>, a: u32, b: u32| (mate[a as usize], mate[b as usize]) = (b, a);
+        for side in (first_edge..first_vertex).step_by(4) {
+            let corner = &self.corners[side as usize..side as usize + 4];
+            join(&mut mate, side, along(corner[1]));
+            join(&mut mate, side + 2, along(corner[3]));
+        }
+        for f in (parent.faces() + edges) as usize..self.source.len() {
+            let (from, to) = (self.offsets[f], self.offsets[f + 1]);
+            for side in from..to {
+                let g = self.corners[if side + 1 == to { from } else { side + 1 } as usize];
+                let across = mate[along(g) as usize];
+                // The last side of a boundary vertex's v-face lies on the new boundary.
+                if across != UNMATCHED {
+                    join(&mut mate, side, across + 1);
+                }
+            }
+        }
+        // Around an inner vertex of two faces there is no v-face: its e-faces meet.
+        for side in (first_edge + 1..first_vertex).step_by(2) {
+            if mate[side as usize] == UNMATCHED {
+                let corner = if (side - first_edge) & 3 == 3 { side - 3 } else { side + 1 };
+                let across = mate[along(self.corners[corner as usize]) as usize];
+                if across != UNMATCHED {
+                    join(&mut mate, side, across + 1);
+                }
+            }
+        }
+        mate
     }
 }
 
@@ -187,7 +232,7 @@ pub(crate) fn sqrt3(c: &Topology, trisect: bool) -> Cut {
 
 /// The twins of [`sqrt3`]'s triangles.
 fn mates(c: &Topology, trisect: bool) -> Vec<u32> {
-    let mut mate = vec![connect::UNMATCHED; 3 * c.half_edges() as usize];
+    let mut mate = vec![UNMATCHED; 3 * c.half_edges() as usize];
     for h in 0..c.half_edges() {
         let (n, p, t) = (c.next(h), c.prev(h), c.twin(h));
         let (before, after) = (c.twin(p), c.twin(n));
@@ -221,4 +266,39 @@ fn mates(c: &Topology, trisect: bool) -> Vec<u32> {
         }
     }
     mate
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::split::Split;
+    use crate::{Mesh, SHAPES, Soup, Weld, connect};
+
+    /// Twins by arithmetic are those that matching sides finds, and passes over a manifold those of the general assembly.
+    #[test]
+    fn half_edges_are_those_that_the_faces_alone_give() {
+        // Two quads back to back: every vertex is an inner one of two faces.
+        let pillow = Soup::from_faces(vec![[0.0; 3]; 4], &[[0, 1, 2, 3], [3, 2, 1, 0]]);
+        let soups = SHAPES.iter().map(|shape| (shape.build)()).chain([pillow]);
+        for soup in soups {
+            let Ok((mesh, _)) = Mesh::build(&soup, Weld::Off) else { panic!("a shape is no mesh") };
+            let mut splits = vec![Split::Dual { rounded: false }, Split::Dual { rounded: true }, Split::Mixed];
+            if mesh.is_triangles() {
+                splits.extend([Split::Sqrt3 { trisect: false }, Split::Sqrt3 { trisect: true }]);
+            }
+            for split in splits {
+                let mut level = mesh.topology.clone();
+                for step in 0..3 {
+                    let split = split.at(step);
+                    let (cut, vertices) = (split.cut(&level), split.children(&level));
+                    let mut corners = cut.corners.clone();
+                    let matched = connect::connect(&cut.offsets, &mut corners, &mut Vec::new(), vertices as usize);
+                    let (expected, _) =
+                        Topology::assemble(cut.offsets.clone(), &corners, vertices as usize, &matched.mate);
+                    level = cut.connect(&level, split, vertices);
+                    assert_eq!(level, expected, "{split:?}, step {step}");
+                }
+            }
+        }
+    }
 }
