@@ -232,6 +232,9 @@ impl Track {
                 }
                 None => self.half_edges = held,
             }
+            if self.limit.as_ref().is_some_and(|l| l.paused) {
+                return;
+            }
         }
         if self.stage == Stage::Done {
             self.half_edges = None;

@@ -13,16 +13,16 @@
 //! In a dual scheme a vertex becomes a face of its images; what stays is the middle of that face, or on a boundary the
 //! middle of the edge between the first image and the last.
 //!
-//! Neighbourhoods that look alike share one analysis. Cost: some 300 us for one of its own kind, about 5 us for the next of
-//! that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
+//! Neighbourhoods that look alike share one analysis. How many rings of faces a scheme looks at is found out: with one more
+//! the answer must be the same. Cost: some 500 us for a new kind of neighbourhood, about 2 us for the next of that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
 //! vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
 
 use super::Mask;
 use super::eigen::{self, Rows, back};
-use super::patch::{Anchor, Patch, Stamps};
+use super::patch::{Anchor, Patch, Seen};
 use crate::scheme::{Entry, Tags};
 use crate::sink::{Cursor, Source};
-use crate::split::{Level, Split};
+use crate::split::{Level, Split, on};
 use crate::topology::{Connectivity, is_boundary};
 use crate::track::Owned;
 use std::f64::consts::PI;
@@ -35,14 +35,16 @@ const WIDEST: u32 = 8;
 /// Masks by kinds of neighbourhoods.
 #[derive(Debug)]
 pub(super) struct Analysis {
-    level: Stamps,
-    child: Stamps,
+    level: Seen,
+    child: Seen,
     rings: u32,
     /// By hashes in order; those of one hash one after the other.
     kinds: Vec<(u64, Kind)>,
+    /// How many analyses there were.
+    pub made: u64,
 }
 
-/// A kind of neighbourhood: its mask over the patch's vertices. No weights if nothing was found.
+/// A kind of neighbourhood: its mask over the vertices that were seen. No weights if nothing was found.
 #[derive(Debug)]
 struct Kind {
     key: Vec<u32>,
@@ -60,57 +62,75 @@ pub(super) struct Setting<'a> {
 
 impl Analysis {
     pub fn new(split: Split) -> Analysis {
-        // Few schemes look at more than two rings; a ring more keeps the patch's own rim away.
-        let rings = if split.keeps_vertices() { 3 } else { 1 };
-        Analysis { level: Stamps::default(), child: Stamps::default(), rings, kinds: Vec::new() }
+        // Few schemes look farther than two rings.
+        let rings = if split.keeps_vertices() { 2 } else { 1 };
+        Analysis { level: Seen::default(), child: Seen::default(), rings, kinds: Vec::new(), made: 0 }
     }
 
     /// Fills in the mask of `v`.
     pub fn mask(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32, mask: &mut Mask) {
-        loop {
-            let sharp = |v: u32| setting.tags.is_sharp(level, v);
-            let patch = Patch::cut(level, Anchor::Vertex(v), self.rings, (sharp, setting.tags.knots), &mut self.level);
-            let hash = hash(&patch.key);
-            let at = self.kinds.partition_point(|k| k.0 < hash);
-            let known = (at..self.kinds.len())
-                .take_while(|&i| self.kinds[i].0 == hash)
-                .find(|&i| self.kinds[i].1.key == patch.key);
-            let i = match known {
-                Some(i) => i,
-                None => match analyse(&patch, self.rings, setting, &mut self.child) {
-                    Found::Wider if self.rings < WIDEST => {
-                        self.rings += 1;
-                        self.kinds.clear();
-                        continue;
-                    }
-                    Found::Kind(kind) => {
-                        self.kinds.insert(at, (hash, kind));
-                        at
-                    }
-                    Found::Wider | Found::Nothing => {
-                        let kind = Kind { key: patch.key.clone(), point: Vec::new(), tangents: None };
-                        self.kinds.insert(at, (hash, kind));
-                        at
-                    }
-                },
-            };
-            let kind = &self.kinds[i].1;
-            if kind.point.is_empty() {
-                return mask.keep(v);
-            }
-            for (local, &v) in patch.vertices.iter().enumerate() {
-                if kind.point[local] != 0.0 {
-                    mask.point.push((v, kind.point[local]));
+        self.look(level, setting, v, self.rings);
+        let hash = hash(&self.level.key);
+        let at = self.kinds.partition_point(|k| k.0 < hash);
+        let same = self.kinds[at..].iter().take_while(|k| k.0 == hash);
+        let i = match same.into_iter().position(|k| k.1.key == self.level.key) {
+            Some(i) => at + i,
+            None => {
+                let rings = self.rings;
+                let kind = self.find(level, setting, v);
+                if rings != self.rings {
+                    // Everything is looked at more widely now.
+                    return self.mask(level, setting, v, mask);
                 }
-                if let Some([a, b]) = &kind.tangents
-                    && (a[local] != 0.0 || b[local] != 0.0)
-                {
-                    mask.tangents.push((v, [a[local], b[local]], 0));
-                }
+                self.kinds.insert(at, (hash, kind));
+                at
             }
-            mask.sectors = u32::from(kind.tangents.is_some());
-            return;
+        };
+        let kind = &self.kinds[i].1;
+        if kind.point.is_empty() {
+            return mask.keep(v);
         }
+        for (local, &v) in self.level.vertices.iter().enumerate() {
+            if kind.point[local] != 0.0 {
+                mask.point.push((v, kind.point[local]));
+            }
+            if let Some([a, b]) = &kind.tangents
+                && (a[local] != 0.0 || b[local] != 0.0)
+            {
+                mask.tangents.push((v, [a[local], b[local]], 0));
+            }
+        }
+        mask.sectors = u32::from(kind.tangents.is_some());
+    }
+
+    fn look(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32, rings: u32) {
+        on!(level, c => {
+            let sharp = |v: u32| setting.tags.is_sharp(*c, v);
+            self.level.read(*c, Anchor::Vertex(v), rings, (sharp, setting.tags.knots));
+        });
+    }
+
+    /// Analyses the neighbourhood of `v`, with one ring more as a check: where that changes anything the scheme looks
+    /// farther, and everything starts again with that ring.
+    fn find(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32) -> Kind {
+        let key = self.level.key.clone();
+        self.made += 1;
+        let narrow = analyse(&self.level.patch(level), self.rings, setting, &mut self.child);
+        let mut wide = Found::Nothing;
+        if self.rings < WIDEST {
+            self.look(level, setting, v, self.rings + 1);
+            wide = analyse(&self.level.patch(level), self.rings + 1, setting, &mut self.child);
+            self.look(level, setting, v, self.rings);
+        }
+        match (narrow, wide) {
+            (Found::Kind(a), Found::Kind(b)) if a.agrees(&b) => return a,
+            (Found::Nothing, _) | (_, Found::Nothing) => {}
+            _ => {
+                self.rings += 1;
+                self.kinds.clear();
+            }
+        }
+        Kind { key, point: Vec::new(), tangents: None }
     }
 }
 
@@ -126,8 +146,21 @@ enum Found {
     Nothing,
 }
 
-/// The mask over the vertices of `first`.
-fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps) -> Found {
+impl Kind {
+    /// Whether a wider neighbourhood, whose vertices begin with the same, gives the same point and the same plane.
+    fn agrees(&self, wide: &Kind) -> bool {
+        let padded = |l: &Vec<f64>| l.iter().copied().chain(std::iter::repeat(0.0)).take(wide.point.len()).collect();
+        let point: Vec<f64> = padded(&self.point);
+        let plane = match (&self.tangents, &wide.tangents) {
+            (Some(a), Some(b)) => eigen::same_plane([padded(&a[0]), padded(&a[1])], b.clone()),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        plane && point.iter().zip(&wide.point).all(|(a, b)| (a - b).abs() < 1e-9)
+    }
+}
+
+/// The mask over the vertices of `first`, and what it was made of.
+fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, seen: &mut Seen) -> Found {
     let (mut anchor, mut split) = (Anchor::Vertex(0), setting.split);
     if let Split::Sqrt3 { .. } = split {
         let rim = |v: u32| is_boundary(first.topology.twin(first.topology.vertex_half_edge(v)));
@@ -141,7 +174,7 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps)
     let mut stationary = false;
     for _ in 0..DEPTH {
         let patch = patches.last().unwrap_or(first);
-        let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, stamps) else {
+        let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, seen) else {
             return Found::Nothing;
         };
         steps.push(rows);
@@ -174,7 +207,10 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, stamps: &mut Stamps)
             let size = if i == 0 { first.vertices.len() } else { patches[i - 1].vertices.len() };
             weights = back(rows, &weights, size);
         }
-        weights
+        // Vertices that the patch has twice count together.
+        let mut seen = vec![0.0; first.class.iter().max().map_or(0, |c| *c as usize + 1)];
+        first.class.iter().zip(&weights).for_each(|(&c, w)| seen[c as usize] += w);
+        seen
     };
     Found::Kind(Kind { key: first.key.clone(), point: down(point), tangents: tangents.map(|t| t.map(down)) })
 }
@@ -191,7 +227,7 @@ fn refine(
     anchor: Anchor,
     rings: u32,
     setting: Setting<'_>,
-    stamps: &mut Stamps,
+    seen: &mut Seen,
 ) -> Option<(Anchor, Patch, Rows)> {
     let t = &patch.topology;
     let level = Level::Base(t);
@@ -229,7 +265,8 @@ fn refine(
     let keeps = setting.split.keeps_vertices();
     let sharp = |v: u32| keeps && patch.sharp.get(v as usize).is_some_and(|s| *s);
     let knots = setting.split.knots(&level, &patch.knots, &lone);
-    let cut = Patch::cut(&child, next, rings, (sharp, &knots), stamps);
+    seen.read(&child, next, rings, (sharp, &knots));
+    let cut = seen.patch(&child);
     let rows = cut.vertices.iter().map(|&v| rows[v as usize].clone()).collect();
     // In its own numbering the anchor comes first.
     let own = match next {
@@ -340,7 +377,7 @@ fn eigenvectors(patch: &Patch, anchor: Anchor, s: &Rows, rings: u32, interpolati
     let mut done = 0;
     while done < members.len() {
         let v = members[done] as usize;
-        if patch.rings[v] >= rings && rings > 0 {
+        if patch.rings[v] > rings {
             return None;
         }
         for &(u, _) in &s[v] {

@@ -20,7 +20,6 @@
 
 use super::{Kind, Mask, Ring};
 use crate::topology::Connectivity;
-use std::f64::consts::PI;
 
 /// Weights of a vertex, its edges' and its faces' points, for the limit point and both tangents.
 type Weights = [f64; 3];
@@ -30,13 +29,20 @@ pub(super) fn mask(c: &impl Connectivity, ring: &Ring, kind: Kind, v: u32, mask:
     let at = |i: u32| ring.neighbours[i as usize];
     match kind {
         Kind::Smooth => {
-            let n = ring.neighbours.len() as f64;
+            let valence = ring.neighbours.len();
+            let n = valence as f64;
             let total = n * (n + 5.0);
-            let cos = |i: f64| libm::cos(2.0 * PI * i / n);
-            let sin = |i: f64| libm::sin(2.0 * PI * i / n);
-            let a = 1.0 + cos(1.0) + libm::cos(PI / n) * (2.0 * (9.0 + cos(1.0))).sqrt();
-            let edge = |i: f64| [4.0 / total, a * cos(i), a * sin(i)];
-            let face = |i: f64| [1.0 / total, cos(i) + cos(i + 1.0), sin(i) + sin(i + 1.0)];
+            let cos = ring.root(1, valence)[0];
+            // cos(pi / n), by the half angle: it is not negative.
+            let a = 1.0 + cos + ((1.0 + cos) / 2.0).max(0.0).sqrt() * (2.0 * (9.0 + cos)).sqrt();
+            let edge = |i: usize| {
+                let [c, s] = ring.root(i, valence);
+                [4.0 / total, a * c, a * s]
+            };
+            let face = |i: usize| {
+                let ([c, s], [d, t]) = (ring.root(i, valence), ring.root(i + 1, valence));
+                [1.0 / total, c + d, s + t]
+            };
             let sector = Sector { first: 0, faces: ring.spokes.len(), curve: false, number: 0 };
             let own = [n / (n + 5.0), 0.0, 0.0];
             let back = [1.0 / (n * n), (n - 2.0) / n];
@@ -47,19 +53,17 @@ pub(super) fn mask(c: &impl Connectivity, ring: &Ring, kind: Kind, v: u32, mask:
             mask.point.extend([(at(a), 1.0 / 6.0), (at(b), 1.0 / 6.0), (v, 4.0 / 6.0)]);
             for number in 0..ring.sectors() {
                 let (first, faces) = ring.sector(number);
-                let theta = PI / faces as f64;
-                let (s, c1) = (libm::sin(theta), libm::cos(theta));
+                let [c1, s] = ring.root(1, 2 * faces);
                 let r = (1.0 + c1) / s;
                 let own = if faces == 1 { -2.0 } else { 4.0 * r * (c1 - 1.0) };
                 let end = if faces == 1 { 1.0 } else { -r * (1.0 + 2.0 * c1) };
-                let inner = |i: f64| if faces == 1 { 0.0 } else { libm::sin(i * theta) };
-                let k = faces as f64;
-                let edge = |i: f64| match i {
-                    0.0 => [0.0, 1.0, end],
-                    i if i == k => [0.0, -1.0, end],
+                let inner = |i: usize| if faces == 1 { 0.0 } else { ring.root(i, 2 * faces)[1] };
+                let edge = |i: usize| match i {
+                    0 => [0.0, 1.0, end],
+                    i if i == faces => [0.0, -1.0, end],
                     i => [0.0, 0.0, 4.0 * inner(i)],
                 };
-                let face = |i: f64| [0.0, 0.0, inner(i) + inner(i + 1.0)];
+                let face = |i: usize| [0.0, 0.0, inner(i) + inner(i + 1)];
                 let sector = Sector { first, faces, curve: true, number };
                 mask.sectors = number + 1;
                 weigh(c, ring, &sector, (v, [0.0, 0.0, own], [0.125, 0.75]), (edge, face), mask);
@@ -88,7 +92,7 @@ fn weigh(
     ring: &Ring,
     sector: &Sector,
     (v, own, back): (u32, Weights, [f64; 2]),
-    (edge, face): (impl Fn(f64) -> Weights, impl Fn(f64) -> Weights),
+    (edge, face): (impl Fn(usize) -> Weights, impl Fn(usize) -> Weights),
     mask: &mut Mask,
 ) {
     let place = |j: usize| (sector.first + j) % ring.neighbours.len();
@@ -110,7 +114,7 @@ fn weigh(
         centre = own.map(|w| w * back[1]);
     }
     for j in 0..spokes {
-        let mut w = edge(j as f64);
+        let mut w = edge(j);
         if !quads {
             let end = sector.curve && (j == 0 || j == sector.faces);
             let share = if end { 0.5 } else { 0.25 };
@@ -122,7 +126,7 @@ fn weigh(
         add(ring.neighbours[place(j)], w);
     }
     for j in 0..sector.faces {
-        let (mut w, corners) = (face(j as f64), c.face_half_edges(c.face(h(j))));
+        let (mut w, corners) = (face(j), c.face_half_edges(c.face(h(j))));
         if quads {
             add(c.origin(c.next(c.next(h(j)))), w);
             continue;
@@ -131,7 +135,7 @@ fn weigh(
         for (edge_at, inner) in [(j, !sector.curve || j > 0), (j + 1, !sector.curve || j + 1 < sector.faces)] {
             if inner {
                 let at = if sector.curve { edge_at } else { edge_at % sector.faces };
-                let e = edge(at as f64);
+                let e = edge(at);
                 (0..3).for_each(|k| w[k] += 0.25 * e[k]);
             }
         }

@@ -114,6 +114,27 @@ fn outside(l: &[f64], plane: [&Vec<f64>; 2]) -> f64 {
     l.iter().enumerate().map(|(i, x)| (x - along[0] * plane[0][i] - along[1] * plane[1][i]).abs()).fold(0.0, f64::max)
 }
 
+/// Whether two pairs of vectors span the same plane.
+pub(super) fn same_plane(a: [Vec<f64>; 2], b: [Vec<f64>; 2]) -> bool {
+    let basis = |[x, y]: [Vec<f64>; 2]| {
+        let x = one(x)?;
+        let along = dot(&y, &x);
+        let y = one(y.iter().zip(&x).map(|(y, x)| y - along * x).collect())?;
+        Some([x, y])
+    };
+    match (basis(a), basis(b)) {
+        (Some([x, y]), Some([p, q])) => outside(&p, [&x, &y]).max(outside(&q, [&x, &y])) < 1e-9,
+        _ => false,
+    }
+}
+
+/// `l` at length one.
+fn one(mut l: Vec<f64>) -> Option<Vec<f64>> {
+    let length = dot(&l, &l).sqrt();
+    l.iter_mut().for_each(|x| *x /= length);
+    length.is_normal().then_some(l)
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -21,20 +21,19 @@
 
 use super::{Kind, Mask, Ring};
 use crate::scheme::{Tags, loop_weight};
-use std::f64::consts::PI;
 
 /// The mask of `v`.
 pub(super) fn mask(ring: &Ring, kind: Kind, v: u32, tags: Tags<'_>, mask: &mut Mask) {
     let at = |i: u32| ring.neighbours[i as usize];
     match kind {
         Kind::Smooth => {
-            let n = ring.neighbours.len() as f64;
-            let x = 1.0 / (0.375 / loop_weight(ring.neighbours.len() as u32, tags) + n);
+            let valence = ring.neighbours.len();
+            let n = valence as f64;
+            let x = 1.0 / (0.375 / loop_weight(valence as u32, tags) + n);
             mask.sectors = 1;
             for (i, &e) in ring.neighbours.iter().enumerate() {
-                let angle = 2.0 * PI * i as f64 / n;
                 mask.point.push((e, x));
-                mask.tangents.push((e, [libm::cos(angle), libm::sin(angle)], 0));
+                mask.tangents.push((e, ring.root(i, valence), 0));
             }
             mask.point.push((v, 1.0 - n * x));
         }
@@ -54,8 +53,7 @@ pub(super) fn mask(ring: &Ring, kind: Kind, v: u32, tags: Tags<'_>, mask: &mut M
 /// Adds the tangents of a sector beside a curve.
 fn across(ring: &Ring, sector: u32, v: u32, mask: &mut Mask) {
     let (first, faces) = ring.sector(sector);
-    let theta = PI / faces as f64;
-    let (s, c) = (libm::sin(theta), libm::cos(theta));
+    let [c, s] = ring.root(1, 2 * faces);
     let (own, end) = if faces == 1 {
         (-2.0, 1.0)
     } else {
@@ -66,7 +64,7 @@ fn across(ring: &Ring, sector: u32, v: u32, mask: &mut Mask) {
     let mut i = first;
     for j in 0..=faces {
         let along = f64::from(j == 0) - f64::from(j == faces);
-        let across = if j == 0 || j == faces { end } else { libm::sin(j as f64 * theta) };
+        let across = if j == 0 || j == faces { end } else { ring.root(j, 2 * faces)[1] };
         mask.tangents.push((ring.neighbours[i], [along, across], sector));
         i = ring.after(i);
     }

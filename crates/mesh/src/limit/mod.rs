@@ -104,24 +104,27 @@ impl Mask {
     /// The unit normal, on a crease the mean of its sides'; none where tangents are missing, parallel or zero.
     pub fn normal(&self, at: impl Fn(u32) -> [f64; 3]) -> Option<[f64; 3]> {
         let mut sum = [0.0; 3];
-        for sector in 0..self.sectors {
-            let [a, b] = self.tangents(sector, &at);
-            let n = unit(cross(a, b), self.size(sector, &at))?;
+        let mut rest = &self.tangents[..];
+        while let Some(&(first, _, sector)) = rest.first() {
+            // The tangents, and how large their cross product could be: to tell it from rounding.
+            let from = at(first);
+            let (mut t, mut weights, mut spread) = ([[0.0; 3]; 2], [0.0; 2], 0.0f64);
+            while let Some((&(v, w, _), more)) = rest.split_first().filter(|(one, _)| one.2 == sector) {
+                let p = at(v);
+                for k in 0..3 {
+                    // Weights sum to zero: differences lose less than coordinates.
+                    let x = p[k] - from[k];
+                    t[0][k] += w[0] * x;
+                    t[1][k] += w[1] * x;
+                    spread = spread.max(x.abs());
+                }
+                weights = [weights[0] + w[0].abs(), weights[1] + w[1].abs()];
+                rest = more;
+            }
+            let n = unit(cross(t[0], t[1]), spread * weights[0] * (spread * weights[1]))?;
             sum = [sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]];
         }
         unit(sum, f64::from(self.sectors))
-    }
-
-    /// How large the cross product of a sector's tangents could be.
-    fn size(&self, sector: u32, at: impl Fn(u32) -> [f64; 3]) -> f64 {
-        let (mut spread, mut weights, mut from) = (0.0f64, [0.0; 2], None);
-        for &(v, w, _) in self.tangents.iter().filter(|t| t.2 == sector) {
-            let p = at(v);
-            let q = *from.get_or_insert(p);
-            (0..3).for_each(|k| spread = spread.max((p[k] - q[k]).abs()));
-            weights = [weights[0] + w[0].abs(), weights[1] + w[1].abs()];
-        }
-        spread * weights[0] * (spread * weights[1])
     }
 }
 
@@ -146,7 +149,12 @@ struct Ring {
     neighbours: Vec<u32>,
     /// The neighbours across creases and boundaries, by their places in `neighbours`.
     creases: Vec<u32>,
+    /// cos and sin of 2 pi i / n, by n and i, as far as they were needed.
+    roots: Vec<Vec<[f64; 2]>>,
 }
+
+/// Tables are kept up to this valence.
+const MOST_ROOTS: usize = 64;
 
 impl Ring {
     /// Turns around `v`. Cost: the valence.
@@ -162,6 +170,23 @@ impl Ring {
         if let Some(arriving) = self.arriving {
             neighbours.push(c.origin(arriving));
             creases.extend([0, spokes.len() as u32]);
+        }
+        let n = if self.arriving.is_some() { 2 * self.spokes.len() } else { self.spokes.len() };
+        if n >= self.roots.len() && n <= MOST_ROOTS {
+            self.roots.resize(n + 1, Vec::new());
+        }
+        if let Some(table) = self.roots.get_mut(n).filter(|t| t.is_empty()) {
+            table.extend((0..n).map(|i| root(i, n)));
+        }
+    }
+
+    /// cos and sin of 2 pi i / n.
+    #[inline(always)]
+    fn root(&self, i: usize, n: usize) -> [f64; 2] {
+        let i = if i >= n { i % n } else { i };
+        match self.roots.get(n).and_then(|t| t.get(i)) {
+            Some(root) => *root,
+            None => root(i, n),
         }
     }
 
@@ -207,6 +232,11 @@ impl Ring {
             _ => Kind::Corner,
         }
     }
+}
+
+fn root(i: usize, n: usize) -> [f64; 2] {
+    let angle = 2.0 * std::f64::consts::PI * i as f64 / n as f64;
+    [libm::cos(angle), libm::sin(angle)]
 }
 
 /// What rules a vertex follows.
@@ -289,11 +319,13 @@ pub(crate) struct Projection {
     analysis: Analysis,
     /// Unit normals, as far as they are found; zero where there is no tangent plane.
     pub normals: Vec<[f32; 3]>,
+    /// Whether a new kind of neighbourhood was met just now: time to see whether anybody waits.
+    pub paused: bool,
 }
 
 impl Projection {
     pub fn new(step: Step) -> Projection {
-        Projection { step, analysis: Analysis::new(step.split), normals: Vec::new() }
+        Projection { step, analysis: Analysis::new(step.split), normals: Vec::new(), paused: false }
     }
 
     /// The step that would come next.
@@ -303,10 +335,11 @@ impl Projection {
 
     /// How many rows' time a vertex takes.
     pub fn cost(scheme: &Entry) -> u32 {
-        if scheme.limit == LimitRule::Analysis { 64 } else { 4 }
+        if scheme.limit == LimitRule::Analysis { 24 } else { 4 }
     }
 
-    /// Works off up to `quota` rows of `at ..`, from `old` to `new` points; true when all are done.
+    /// Works off up to `quota` rows of `at ..`, or up to the next new kind of neighbourhood, from `old` to `new` points; true
+    /// when all are done.
     pub fn work(
         &mut self,
         (level, tags): (&Level<'_>, Tags<'_>),
@@ -317,16 +350,23 @@ impl Projection {
     ) -> bool {
         let cost = u64::from(Projection::cost(self.step.scheme));
         let all = cost * old.len() as u64;
-        let end = all.min(at.saturating_add(*quota as u64));
+        let mut end = all.min(at.saturating_add(*quota as u64));
         let (from, to) = (at.div_ceil(cost) as u32, end.div_ceil(cost) as u32);
         let mut projector = Projector::new(self.step.scheme, (level, self.step.split, tags));
         std::mem::swap(&mut projector.analysis, &mut self.analysis);
         self.normals.reserve_exact(old.len() - self.normals.len());
         let p = |v: u32| old[v as usize].map(f64::from);
+        let made = projector.analysis.made;
+        self.paused = false;
         for v in from..to {
             let mask = projector.mask(v);
             new[v as usize] = mask.point(p).map(|x| x as f32);
             self.normals.push(mask.normal(p).unwrap_or_default().map(|x| x as f32));
+            if projector.analysis.made > made {
+                self.paused = true;
+                end = end.min(cost * (u64::from(v) + 1));
+                break;
+            }
         }
         std::mem::swap(&mut projector.analysis, &mut self.analysis);
         *quota -= (end - *at) as usize;

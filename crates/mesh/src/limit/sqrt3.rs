@@ -18,14 +18,13 @@
 
 use super::{Kind, Mask, Ring};
 use crate::topology::{Connectivity, is_boundary};
-use std::f64::consts::PI;
 
 /// Weights of a neighbour for the limit point and both tangents.
 type Weights = [f64; 3];
 
 /// How much of a vertex of valence `n` goes to its neighbours' mean.
-fn share(n: usize) -> f64 {
-    (4.0 - 2.0 * libm::cos(2.0 * PI / n as f64)) / 9.0
+fn share(ring: &Ring, n: usize) -> f64 {
+    (4.0 - 2.0 * ring.root(1, n)[0]) / 9.0
 }
 
 /// The mask of `v`. `trisect` says whether the next step cuts boundary edges, `sharp` which vertices stay.
@@ -65,16 +64,16 @@ pub(super) fn mask(
     match kind {
         Kind::Smooth => {
             let n = children.len() as f64;
-            let a = share(children.len());
+            let a = share(ring, children.len());
             own[0] = 1.0 / (1.0 + 3.0 * a);
             let point = 3.0 * a / (1.0 + 3.0 * a) / n;
             for i in 0..children.len() {
-                let angle = 2.0 * PI * i as f64 / n;
-                weights.push([point, libm::cos(angle), libm::sin(angle)]);
+                let [cos, sin] = ring.root(i, children.len());
+                weights.push([point, cos, sin]);
             }
             if changes {
                 // v's child, by the valence before the step; its neighbours take a share each.
-                let b = share(ring.neighbours.len());
+                let b = share(ring, ring.neighbours.len());
                 for &e in &ring.neighbours {
                     mask.point.push((e, own[0] * b / ring.neighbours.len() as f64));
                 }
@@ -84,15 +83,14 @@ pub(super) fn mask(
         Kind::Curve(a, b) => {
             let at = |i: u32| ring.neighbours[i as usize];
             mask.point.extend([(at(a), 1.0 / 6.0), (at(b), 1.0 / 6.0), (v, 4.0 / 6.0)]);
-            let theta = PI / k as f64;
-            let (s, cos) = (libm::sin(theta), libm::cos(theta));
+            let [cos, s] = ring.root(1, 2 * k);
             let z = if k == 1 { 0.0 } else { (1.0 + cos) / s };
             let x = if k == 1 { -2.0 } else { -z / (3.0 + 6.0 * cos) };
             let y = -0.5 * (x + z);
             for i in 0..=k {
                 let end = i == 0 || i == k;
                 let along = f64::from(i == 0) - f64::from(i == k);
-                weights.push([0.0, along, if end { y } else { libm::sin(i as f64 * theta) }]);
+                weights.push([0.0, along, if end { y } else { ring.root(i, 2 * k)[1] }]);
             }
             own[2] = x;
             if changes {
