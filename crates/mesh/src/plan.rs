@@ -143,7 +143,7 @@ impl Plan {
             };
             let stored = split.stores() || (held == Held::Triangles && info.accepts == Accepts::Polygons);
             shape = split.face_shape(shape);
-            uncounted = matches!(split, Split::Dual { .. });
+            uncounted = matches!(split, Split::Dual { .. } | Split::MidEdge { .. });
             held = match split {
                 Split::Quad => Held::Quads,
                 Split::Triangle => Held::Triangles,

@@ -318,8 +318,8 @@ impl Job {
             points: self.geometry.points.unwrap_or_default(),
             faces: match split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
-                Split::Triangle | Split::Sqrt3 { .. } => Faces::Triangles(self.geometry.corners),
-                Split::Mixed | Split::Dual { .. } => {
+                Split::Triangle | Split::Sqrt3 { .. } | Split::Poke => Faces::Triangles(self.geometry.corners),
+                Split::Mixed | Split::Dual { .. } | Split::MidEdge { .. } => {
                     Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
                 }
             },

@@ -89,18 +89,38 @@ pub trait Connectivity {
 
     /// Counts of this level. Cost: linear.
     fn counts(&self) -> Counts {
-        let mut rim = [0; 4];
+        let (mut rim, mut tips) = ([0; 4], 0);
         for r in 0..self.boundary_half_edges() {
-            let mut faces = 0;
-            self.turn(self.origin(self.boundary_half_edge(r)), |_| faces += 1);
-            rim[faces.min(3) - 1] += 1;
+            let (h, mut faces) = (self.boundary_half_edge(r), 0);
+            self.turn(self.origin(h), |_| faces += 1);
+            rim[faces.min(4) - 1] += 1;
+            tips += u64::from(faces == 1 && self.face_half_edges(self.face(h)).len() == 3);
         }
-        let is_digon = |&v: &u32| {
+        let is_digon = |v: u32| {
             let h = self.vertex_half_edge(v);
             let t = self.twin(self.prev(h));
             !is_boundary(self.twin(h)) && !is_boundary(t) && self.twin(self.prev(t)) == h
         };
-        let digons = (0..self.vertices()).filter(is_digon).count() as u64;
+        let is_followed = |spoke: u32| is_digon(self.origin(self.next(spoke)));
+        let (mut digons, mut chains) = (0, [0; CHAINS]);
+        for v in (0..self.vertices()).filter(|v| is_digon(*v)) {
+            digons += 1;
+            let h = self.vertex_half_edge(v);
+            let other = self.twin(self.prev(h));
+            // From one end of a chain to the other: each chain is met twice.
+            for (back, mut spoke) in [(h, other), (other, h)] {
+                if is_followed(back) {
+                    continue;
+                }
+                let mut length = 1;
+                while is_followed(spoke) {
+                    length += 1;
+                    spoke = self.twin(self.prev(self.twin(spoke)));
+                }
+                chains[..length.min(CHAINS)].iter_mut().for_each(|n| *n += 1);
+            }
+        }
+        chains.iter_mut().for_each(|n| *n /= 2);
         let is_triangle = |f: u32| self.face_half_edges(f).len() == 3;
         let sides = (0..self.boundary_half_edges()).filter(|&r| is_triangle(self.face(self.boundary_half_edge(r))));
         let triangles = [(0..self.faces()).filter(|&f| is_triangle(f)).count() as u64, sides.count() as u64];
@@ -112,10 +132,15 @@ pub trait Connectivity {
             corners: self.half_edges().into(),
             boundary: self.boundary_half_edges().into(),
             rim,
+            tips,
             digons,
+            chains,
         }
     }
 }
+
+/// How many mid-edge steps a chain of inner vertices of two faces is followed for: more than 32-bit levels can have.
+pub const CHAINS: usize = 30;
 
 /// How many of everything there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,14 +155,19 @@ pub struct Counts {
     pub corners: u64,
     /// Half-edges on a boundary.
     pub boundary: u64,
-    /// Triangles, and their half-edges on a boundary: what the mixed split depends on. Not predicted after a dual split,
-    /// where both are 0.
+    /// Triangles, and their half-edges on a boundary: what the mixed split depends on. Not predicted after dual and
+    /// mid-edge splits, where both are 0.
     pub triangles: [u64; 2],
     /// Boundary vertices of one face, of two, of three, and of more; what dual splits make of a rim depends on them. Those of
     /// three and more may all be counted at three.
     pub rim: [u64; 4],
+    /// Boundary vertices of one face that is a triangle.
+    pub tips: u64,
     /// Inner vertices of two faces.
     pub digons: u64,
+    /// Of these, chains from neighbour to neighbour that are longer than 0, 1, 2 ..; closed ones are left out. The mid-edge
+    /// split takes one from each.
+    pub chains: [u32; CHAINS],
 }
 
 impl Counts {

@@ -262,9 +262,12 @@ fn put_counts(out: &mut Writer, c: &Counts) {
         boundary,
         triangles: [three_sided, sides],
         rim: [one, two, three, more],
+        tips,
         digons,
+        chains,
     } = *c;
-    out.array(&[vertices, edges, faces, corners, boundary, three_sided, sides, one, two, three, more, digons]);
+    out.array(&[vertices, edges, faces, corners, boundary, three_sided, sides, one, two, three, more, tips, digons]);
+    out.array(&chains);
 }
 
 fn put_topology(out: &mut Writer, t: &Topology) {
@@ -281,13 +284,16 @@ fn put_split(out: &mut Writer, split: Split) {
         Split::Dual { rounded } => (2, u32::from(rounded)),
         Split::Sqrt3 { trisect } => (3, u32::from(trisect)),
         Split::Mixed => (4, 0),
+        Split::MidEdge { cut, corners } => (5, u32::from(cut) + 2 * u32::from(corners)),
+        Split::Poke => (6, 0),
     };
     out.array(&[kind, more]);
 }
 
 fn counts(from: &mut Reader<'_>) -> Read<Counts> {
-    let [vertices, edges, faces, corners, boundary, three_sided, sides, one, two, three, more, digons] =
+    let [vertices, edges, faces, corners, boundary, three_sided, sides, one, two, three, more, tips, digons] =
         from.exactly()?;
+    let chains = from.exactly()?;
     Ok(Counts {
         vertices,
         edges,
@@ -296,7 +302,9 @@ fn counts(from: &mut Reader<'_>) -> Read<Counts> {
         boundary,
         triangles: [three_sided, sides],
         rim: [one, two, three, more],
+        tips,
         digons,
+        chains,
     })
 }
 
@@ -321,6 +329,8 @@ fn split(from: &mut Reader<'_>) -> Read<Split> {
         2 => Ok(Split::Dual { rounded: more == 1 }),
         3 => Ok(Split::Sqrt3 { trisect: more == 1 }),
         4 => Ok(Split::Mixed),
+        5 => Ok(Split::MidEdge { cut: more & 1 == 1, corners: more & 2 == 2 }),
+        6 => Ok(Split::Poke),
         _ => Err(Damaged),
     }
 }

@@ -150,7 +150,9 @@ fn analysis_finds_the_closed_forms() {
     for (name, soup) in gallery() {
         let mesh = Mesh::build(&soup, Weld::Off).unwrap().0;
         let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
-        for scheme in SCHEMES.iter().filter(|s| !matches!(s.limit, LimitRule::Analysis | LimitRule::Itself)) {
+        for scheme in
+            SCHEMES.iter().filter(|s| !matches!(s.limit, LimitRule::Analysis | LimitRule::Itself | LimitRule::MidEdge))
+        {
             for (boundary, level) in [(Boundary::EdgeOnly, 0), (Boundary::EdgeAndCorner, 0), (Boundary::EdgeOnly, 1)] {
                 let plan = Plan::new(scheme, boundary, 0);
                 if plan.split(&mesh).is_err() {
@@ -224,6 +226,49 @@ fn dual_vertices_go_to_the_mean_of_their_images() {
     }
 }
 
+/// Mid-edge: a face shrinks to its centroid, whatever the level; along the rim the middles of the edges that are left of its
+/// vertices stay, and so do middles of whole edges half way.
+#[test]
+fn mid_edge_faces_shrink_to_their_centroids() {
+    let scheme = scheme("mid-edge").unwrap();
+    for (name, soup) in gallery() {
+        let mesh = Mesh::build(&soup, Weld::Off).unwrap().0;
+        let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        for (boundary, level) in
+            [0, 1, 2].into_iter().flat_map(|l| [Boundary::EdgeOnly, Boundary::EdgeAndCorner].map(|b| (b, l)))
+        {
+            let plan = Plan::new(scheme, boundary, 0);
+            let what = format!("{name}, {boundary:?}, level {level}");
+            let (found, here) = on_level(&mesh, &plan, &positions, level, |on, points| {
+                let rim: Vec<bool> =
+                    (0..on.0.vertices()).map(|v| is_boundary(on.0.twin(on.0.vertex_half_edge(v)))).collect();
+                (limit(scheme, on, points), rim)
+            });
+            // The limit of a level and of one two further: every limit point is one there, or the middle of a rim's edge, or
+            // the centroid of a face.
+            let candidates = on_level(&mesh, &plan, &positions, level + 2, |on, points| {
+                let (c, limits) = (on.0, limit(scheme, on, points));
+                let centroid = |f: u32| {
+                    let corners: Vec<_> = c.face_half_edges(f).map(|h| points[c.origin(h) as usize]).collect();
+                    std::array::from_fn(|k| corners.iter().map(|p| p[k]).sum::<f64>() / corners.len() as f64)
+                };
+                let mut all: Vec<[f64; 3]> = (0..c.faces()).map(centroid).collect();
+                all.extend((0..c.boundary_half_edges()).map(|r| {
+                    let h = c.boundary_half_edge(r);
+                    let (p, q) = (points[c.origin(h) as usize], points[c.origin(c.next(h)) as usize]);
+                    std::array::from_fn(|k| (p[k] + q[k]) / 2.0)
+                }));
+                all.extend(limits.points);
+                all
+            });
+            for (v, p) in found.points.iter().enumerate() {
+                let d = candidates.iter().map(|q| far(*p, *q)).fold(f64::MAX, f64::min);
+                assert!(d < 1e-12, "{what}: vertex {v}, rim {}: {d}", here[v]);
+            }
+        }
+    }
+}
+
 /// Six levels further the surface is nearly there: points, and normals where there are any, on the right side.
 #[test]
 fn refinement_comes_close() {
@@ -238,7 +283,11 @@ fn refinement_comes_close() {
                     continue;
                 }
                 let dual = scheme.info.group == "dual";
-                let depth = if scheme.limit == LimitRule::Sqrt3 { 8 } else { 5 };
+                let depth = match scheme.limit {
+                    LimitRule::Sqrt3 => 8,
+                    LimitRule::MidEdge => 9,
+                    _ => 5,
+                };
                 let what = format!("{name}, {}, {boundary:?}", scheme.info.id);
                 let limit = limits(&mesh, &plan, &positions, 0);
                 let deep = refine(&Arc::new(mesh.clone()), &plan.to(depth), u64::MAX).unwrap();
@@ -250,7 +299,15 @@ fn refinement_comes_close() {
                     } else {
                         v
                     };
-                    assert!(gap(w) < 0.15, "{what}: vertex {v} is {} away", gap(w));
+                    // A mid-edge face of many corners shrinks slowly, to its centroid.
+                    let slow = scheme.limit == LimitRule::MidEdge;
+                    let middles = (0..deep.faces.count()).filter(|_| slow).map(|f| {
+                        let face = deep.faces.face(f);
+                        let sum = |k: usize| face.iter().map(|w| f64::from(deep.points[*w as usize][k])).sum::<f64>();
+                        far([0, 1, 2].map(|k| sum(k) / face.len() as f64), limit.points[v])
+                    });
+                    let gap = middles.fold(gap(w), f64::min);
+                    assert!(gap < 0.15, "{what}: vertex {v} is {gap} away");
                     // The nearest point to a cut may be on its other side.
                     let Some(n) = limit.normals[v].filter(|_| !(dual && cut)) else { continue };
                     let cos: f64 = (0..3).map(|k| n[k] * f64::from(normals[w][k])).sum();

@@ -1,11 +1,12 @@
-//! Doo-Sabin and the sqrt3 schemes against the plainest program that can be written from their papers: polygons, maps, f64, no
+//! Schemes whose levels are stored in full against the plainest program that can be written from their papers: polygons, maps, f64, no
 //! half-edges. Numbers of vertices differ, so points are matched by place.
 
 mod common;
 
 use common::polygons::{Point, Polygons, compare, mean, mix, polygons, turned};
 use common::{build, gallery};
-use limn_mesh::Boundary;
+use limn_mesh::refine::evaluate;
+use limn_mesh::{Boundary, FaceKind, Plan, predict, refine, scheme};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -224,6 +225,126 @@ fn dual_schemes_equal_their_papers() {
     assert!(compared > 100);
 }
 
+/// Peters and Reif 1997; the rim's vertices are kept in every first step and cut off in every second.
+fn mid_edge(p: &Polygons, cut: bool, boundary: Boundary) -> Polygons {
+    let a = p.around();
+    let points = a.edges.keys().map(|e| mean([&p.points[e.0], &p.points[e.1]])).collect();
+    let mut out = Polygons { points, faces: Vec::new() };
+    let number: BTreeMap<(usize, usize), usize> = a.edges.keys().enumerate().map(|(i, e)| (*e, i)).collect();
+    let middle = |v: usize, w: usize| number[&(v.min(w), v.max(w))];
+    let mut kept = BTreeMap::new();
+    for v in (0..p.points.len()).filter(|&v| !a.rim[v].is_empty()) {
+        let alone = a.faces[v].len() == 1 && p.faces[a.faces[v][0]].len() == 3;
+        if !cut || (alone && boundary == Boundary::EdgeAndCorner) {
+            kept.insert(v, out.points.len());
+            out.points.push(p.points[v]);
+        }
+    }
+    for face in &p.faces {
+        let mut corners = Vec::new();
+        for (i, &v) in face.iter().enumerate() {
+            corners.push(middle(face[(i + face.len() - 1) % face.len()], v));
+            corners.extend(kept.get(&v).filter(|_| cut));
+        }
+        out.faces.push(corners);
+    }
+    for v in 0..p.points.len() {
+        let (ring, _) = p.ring(&a, v);
+        let mut corners: Vec<usize> = ring.iter().map(|&w| middle(v, w)).collect();
+        corners.extend(kept.get(&v).filter(|_| !cut));
+        if corners.len() >= 3 {
+            out.faces.push(corners);
+        }
+    }
+    out
+}
+
+#[test]
+fn mid_edge_equals_its_paper() {
+    let image = |face: &[Point], i: usize| {
+        let n = face.len();
+        mix(&[(0.5, face[i]), (0.25, face[(i + 1) % n]), (0.25, face[(i + n - 1) % n])])
+    };
+    let mut compared = [0, 0];
+    for (name, soup) in gallery() {
+        let mesh = build(&soup);
+        if mesh.positions.len() != soup.positions.len() || soup.face_count() > 200 {
+            continue;
+        }
+        let positions: Vec<Point> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        for boundary in [Boundary::EdgeOnly, Boundary::EdgeAndCorner] {
+            let (mut naive, mut twice) = (polygons(&soup), polygons(&soup));
+            for level in 1..=4 {
+                naive = mid_edge(&naive, level % 2 == 0, boundary);
+                let plan = Plan::new(scheme("mid-edge").unwrap(), boundary, level);
+                let refined = refine(&mesh, &plan, u64::MAX).unwrap();
+                let ours = evaluate(&mesh, &plan, &positions, |_| ()).unwrap();
+                assert_eq!(refined.faces.count(), naive.faces.len(), "{name}, level {level}, {boundary:?}");
+                let d = common::distance(&ours, &naive.points);
+                assert!(d < 1e-12, "{name}, level {level}, {boundary:?}: off by {d}");
+                let faces = refined.kinds.iter().filter(|k| **k == FaceKind::Face).count() as u64;
+                assert_eq!(
+                    faces,
+                    predict(&mesh, &plan.to(level - 1)).unwrap().unwrap().counts.faces,
+                    "{name}: f-faces"
+                );
+                compared[0] += 1;
+                // Closed, two steps are one of a dual scheme.
+                if level % 2 == 0 && mesh.counts().boundary == 0 {
+                    twice = dual(&twice, image, boundary);
+                    let d = common::distance(&ours, &twice.points);
+                    assert!(d < 1e-12, "{name}, level {level}: off by {d}");
+                    compared[1] += 1;
+                }
+            }
+        }
+    }
+    assert!(compared[0] > 200 && compared[1] > 50);
+}
+
+/// The rim of two steps is Chaikin's.
+#[test]
+fn mid_edge_cuts_the_rim_s_corners() {
+    let soup = (limn_mesh::shape("grid").unwrap().build)();
+    let mesh = build(&soup);
+    let rim = |p: &Polygons| -> Vec<[Point; 2]> {
+        let edges = p.around().edges.into_iter().filter(|e| e.1.len() == 1);
+        edges.map(|((v, w), _)| [p.points[v], p.points[w]]).collect()
+    };
+    let mut expected: Vec<Point> = Vec::new();
+    for [v, w] in rim(&polygons(&soup)) {
+        expected.extend([mix(&[(0.75, v), (0.25, w)]), mix(&[(0.25, v), (0.75, w)])]);
+    }
+    let refined = refine(&mesh, &Plan::new(scheme("mid-edge").unwrap(), Boundary::EdgeOnly, 2), u64::MAX).unwrap();
+    let faces = (0..refined.faces.count()).map(|f| refined.faces.face(f).iter().map(|v| *v as usize).collect());
+    let points = refined.points.iter().map(|p| p.map(f64::from)).collect();
+    let ours = rim(&Polygons { points, faces: faces.collect() });
+    assert_eq!(ours.len(), expected.len());
+    let starts: Vec<Point> = ours.iter().flatten().copied().collect();
+    let twice: Vec<Point> = expected.iter().flat_map(|p| [*p, *p]).collect();
+    assert!(common::distance(&starts, &twice) < 1e-6);
+}
+
+/// A triangle for every side of every face.
+#[test]
+fn poke_equals_its_picture() {
+    for (name, soup) in gallery() {
+        let mesh = build(&soup);
+        if mesh.positions.len() != soup.positions.len() || soup.face_count() > 200 {
+            continue;
+        }
+        compare(&name, &mesh, "poke", Boundary::default(), polygons(&soup), |p| {
+            let mut out = Polygons { points: p.points.clone(), faces: Vec::new() };
+            for face in &p.faces {
+                let middle = out.points.len();
+                out.points.push(mean(face.iter().map(|&v| &p.points[v])));
+                out.faces.extend((0..face.len()).map(|i| vec![face[i], face[(i + 1) % face.len()], middle]));
+            }
+            out
+        });
+    }
+}
+
 #[test]
 fn sqrt3_schemes_equal_their_papers() {
     for (name, soup) in gallery() {
@@ -252,9 +373,9 @@ fn sqrt3_schemes_equal_their_papers() {
 fn doo_sabin_makes_the_faces_that_reports_count() {
     let counts = |name: &str, level: u32| {
         let mesh = build(&(limn_mesh::shape(name).unwrap().build)());
-        let plan = limn_mesh::Plan::new(limn_mesh::scheme("doo-sabin").unwrap(), Boundary::default(), level);
-        let refined = limn_mesh::refine(&mesh, &plan, u64::MAX).unwrap();
-        let kinds = [limn_mesh::FaceKind::Face, limn_mesh::FaceKind::Edge, limn_mesh::FaceKind::Vertex];
+        let plan = Plan::new(scheme("doo-sabin").unwrap(), Boundary::default(), level);
+        let refined = refine(&mesh, &plan, u64::MAX).unwrap();
+        let kinds = [FaceKind::Face, FaceKind::Edge, FaceKind::Vertex];
         (refined.faces.count(), kinds.map(|k| refined.kinds.iter().filter(|x| **x == k).count()))
     };
     assert_eq!(counts("cube", 1), (26, [6, 12, 8]));

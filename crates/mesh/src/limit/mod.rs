@@ -13,8 +13,8 @@
 //!    1 --.-- 4 --.
 //! ```
 //!
-//! [`Projector`] finds the mask of any vertex: in closed form for Catmull-Clark, Loop and sqrt3 with their boundaries and
-//! corners, by eigen-analysis of the scheme's own rows everywhere else. An interpolating scheme's vertices stay; a dual
+//! [`Projector`] finds the mask of any vertex: in closed form for Catmull-Clark, Loop, sqrt3 and mid-edge with their boundaries
+//! and corners, by eigen-analysis of the scheme's own rows everywhere else. An interpolating scheme's vertices stay; a dual
 //! scheme's, which cut themselves off at every step, go where the mean of their images does.
 //!
 //! Sources: M. Halstead, M. Kass, T. DeRose, "Efficient, fair interpolation using Catmull-Clark surfaces" (1993); C. Loop
@@ -27,6 +27,7 @@ mod catmull_clark;
 mod eigen;
 #[path = "loop.rs"]
 mod loop_;
+mod mid_edge;
 mod patch;
 mod sqrt3;
 
@@ -46,6 +47,8 @@ pub enum LimitRule {
     Loop,
     /// Sqrt3's masks.
     Sqrt3,
+    /// Mid-edge's masks.
+    MidEdge,
     /// By eigen-analysis of what the scheme does around a vertex.
     Analysis,
     /// Vertices are where they are, and there are no tangents: the surface is that of the mesh.
@@ -289,6 +292,10 @@ impl<'a> Projector<'a> {
                         sqrt3::mask(c, &self.ring, (kind, trisect), v, |v| tags.is_sharp(c, v), mask);
                     }
                 }
+            }
+            LimitRule::MidEdge => {
+                self.ring.read(c, v);
+                mid_edge::mask(c, &self.ring, self.split, v, mask);
             }
             LimitRule::Analysis => {
                 let setting = Setting { scheme: self.scheme, split: self.split, tags };

@@ -19,9 +19,11 @@ mod kobbelt;
 mod linear;
 #[path = "loop.rs"]
 mod loop_;
+mod mid_edge;
 mod modified_butterfly;
 mod nurss;
 mod params;
+mod poke;
 mod quad_triangle;
 mod sqrt3;
 
@@ -33,9 +35,11 @@ pub use j_spline::JSpline;
 pub use kobbelt::Kobbelt;
 pub use linear::Linear;
 pub use loop_::Loop;
+pub use mid_edge::MidEdge;
 pub use modified_butterfly::ModifiedButterfly;
 pub use nurss::Nurss;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
+pub use poke::Poke;
 pub use quad_triangle::QuadTriangle;
 pub use sqrt3::Sqrt3;
 
@@ -60,7 +64,9 @@ pub static SCHEMES: &[Entry] = &[
     entry::<DooSabin>(),
     entry::<Midpoint>(),
     entry::<Nurss>(),
+    entry::<MidEdge>(),
     entry::<Linear>(),
+    entry::<Poke>(),
 ];
 
 /// The scheme with this id.
@@ -113,6 +119,10 @@ pub enum Family {
     Dual,
     /// Splits triangles in three and turns their edges.
     Sqrt3,
+    /// Joins the midpoints of edges: a face for every face and vertex.
+    MidEdge,
+    /// Splits faces into triangles around their middle.
+    Poke,
 }
 
 impl Info {
@@ -123,6 +133,10 @@ impl Info {
             _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
             _ if self.family == Family::Mixed && shape == FaceShape::Polygons => Some(Split::Mixed),
             _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
+            _ if self.family == Family::MidEdge => {
+                Some(Split::MidEdge { cut: false, corners: boundary == Boundary::EdgeAndCorner })
+            }
+            _ if self.family == Family::Poke => Some(Split::Poke),
             (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
         }
@@ -199,7 +213,8 @@ pub struct Tags<'a> {
     pub step: u32,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
-    /// Corners with two images, of the dual split, by their half-edges: children from `half_edges()` on.
+    /// Corners that the split treats by name, by their half-edges: of the dual split those with two images, children from
+    /// `half_edges()` on; of the mid-edge split those that are kept, children from `edges()` on.
     pub lone: &'a [u32],
     /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
     pub knots: &'a [f32],
@@ -278,6 +293,10 @@ const fn entry<S: Scheme>() -> Entry {
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {
     match (level, S::INFO.accepts) {
         (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
+        // What a scheme's own split stores needs no rules for the others.
+        (level, _) if !matches!(S::INFO.family, Family::Primal | Family::Mixed) => {
+            seldom::<S>(level, split, tags, &mut Either::Eval(sink));
+        }
         (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
         (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
         _ if S::COMMON => unreachable!("a scheme's own split made the level"),
@@ -296,8 +315,8 @@ fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut
 /// where the scheme makes such.
 fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
-        (Level::Base(c), Family::Mixed | Family::Dual | Family::Sqrt3) => S::rules(*c, split, tags, sink),
         (level, Family::Primal) => S::rules(level, split, tags, sink),
+        (Level::Base(c), _) => S::rules(*c, split, tags, sink),
         _ => unreachable!("stored levels come of stored levels"),
     }
 }

@@ -125,6 +125,9 @@ impl Ring {
         for j in 0..self.faces {
             let at = 2.0 * PI * f64::from(j) / k;
             let weight = match (self.faces, j) {
+                // The parabola through three points in a row, as at four with the other two left out.
+                (2, 0) => 0.375,
+                (2, _) => -0.125,
                 (3, 0) => 5.0 / 12.0,
                 (3, _) => -1.0 / 12.0,
                 (4, 0) => 0.375,

@@ -18,7 +18,10 @@
 //!
 //! Ids of vertices are stable prefixes: vertex 17 of level 0 is vertex 17 of every level. Cost: about 3 ns a half-edge.
 
+mod counts;
+mod mid_edge;
 mod mixed;
+mod poke;
 mod quad;
 pub(crate) mod stored;
 mod triangle;
@@ -27,7 +30,7 @@ pub use quad::QuadLevel;
 pub use stored::FaceKind;
 pub use triangle::TriangleLevel;
 
-use crate::topology::{Connectivity, Counts};
+use crate::topology::Connectivity;
 
 /// The splits there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +51,15 @@ pub enum Split {
         /// Whether this step cuts boundary edges in three: every second one.
         trisect: bool,
     },
+    /// A face for every face and every vertex; the vertices are edges. Takes any polygons.
+    MidEdge {
+        /// Whether this step cuts boundary vertices off, which the one before kept: every second one.
+        cut: bool,
+        /// Whether those of one face in that step before are kept for good.
+        corners: bool,
+    },
+    /// Every face of n corners becomes n triangles around a new face point. Takes any polygons.
+    Poke,
 }
 
 /// What the faces of a level look like.
@@ -66,8 +78,8 @@ impl Split {
     pub fn face_shape(self, _before: FaceShape) -> FaceShape {
         match self {
             Split::Quad => FaceShape::Quads,
-            Split::Triangle | Split::Sqrt3 { .. } => FaceShape::Triangles,
-            Split::Mixed | Split::Dual { .. } => FaceShape::Polygons,
+            Split::Triangle | Split::Sqrt3 { .. } | Split::Poke => FaceShape::Triangles,
+            Split::Mixed | Split::Dual { .. } | Split::MidEdge { .. } => FaceShape::Polygons,
         }
     }
 
@@ -75,123 +87,38 @@ impl Split {
     pub fn at(self, step: u32) -> Split {
         match self {
             Split::Sqrt3 { .. } => Split::Sqrt3 { trisect: step % 2 == 1 },
+            Split::MidEdge { corners, .. } => Split::MidEdge { cut: step % 2 == 1, corners },
             other => other,
         }
     }
 
     /// Whether levels after this split store their half-edges in full, as level 0 does.
     pub fn stores(self) -> bool {
-        matches!(self, Split::Mixed | Split::Dual { .. } | Split::Sqrt3 { .. })
+        !matches!(self, Split::Quad | Split::Triangle)
     }
 
     /// Whether the vertices of a level are the first of the next.
     pub fn keeps_vertices(self) -> bool {
-        !matches!(self, Split::Dual { .. })
+        !matches!(self, Split::Dual { .. } | Split::MidEdge { .. })
     }
 
     /// Whether child faces lie in their parents, so that texture coordinates can follow them.
     pub fn keeps_corners(self) -> bool {
-        !matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. })
+        !matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. } | Split::MidEdge { .. })
     }
 
-    /// What only some have a child for: of the dual split the corners of `c` with two images, by their half-edges, children
-    /// from `half_edges()` on; of the mixed split the faces that are no triangles, children from `vertices()` on. Cost:
-    /// linear where there can be any.
+    /// What only some have a child for ([`crate::scheme::Tags::lone`]): of the dual split the corners of `c` with two images,
+    /// by their half-edges, children from `half_edges()` on; of the mid-edge split the corners that are kept, by their
+    /// half-edges, children from `edges()` on; of the mixed split the faces that are no triangles, children from
+    /// `vertices()` on. Cost: linear where there can be any.
     pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
         match self {
             _ if !crate::FULL => Vec::new(),
             Split::Dual { rounded: true } => stored::lone_corners(c),
+            Split::MidEdge { cut: true, corners: true } => mid_edge::tips(c),
             Split::Mixed => mixed::pointed_faces(c),
             _ => Vec::new(),
         }
-    }
-
-    /// The counts one level further, or none if they do not fit 64 bits.
-    pub fn counts(self, c: Counts) -> Option<Counts> {
-        let [one, two, three, more] = c.rim;
-        let new = match self {
-            Split::Quad => Counts {
-                vertices: c.vertices.checked_add(c.edges)?.checked_add(c.faces)?,
-                edges: c.edges.checked_mul(2)?.checked_add(c.corners)?,
-                faces: c.corners,
-                corners: c.corners.checked_mul(4)?,
-                boundary: c.boundary.checked_mul(2)?,
-                triangles: [0; 2],
-                rim: [one, two.checked_add(c.boundary)?, three, more],
-                ..c
-            },
-            Split::Triangle => Counts {
-                vertices: c.vertices.checked_add(c.edges)?,
-                edges: c.edges.checked_mul(2)?.checked_add(c.corners)?,
-                faces: c.faces.checked_mul(4)?,
-                corners: c.corners.checked_mul(4)?,
-                boundary: c.boundary.checked_mul(2)?,
-                triangles: [c.faces.checked_mul(4)?, c.boundary.checked_mul(2)?],
-                rim: [one, two, three.checked_add(c.boundary)?, more],
-                ..c
-            },
-            Split::Mixed => {
-                let [triangles, sides] = c.triangles;
-                let pointed = c.faces.checked_sub(triangles)?;
-                Counts {
-                    vertices: c.vertices.checked_add(c.edges)?.checked_add(pointed)?,
-                    edges: c.edges.checked_mul(2)?.checked_add(c.corners)?,
-                    faces: c.corners.checked_add(triangles)?,
-                    corners: c.corners.checked_mul(4)?,
-                    boundary: c.boundary.checked_mul(2)?,
-                    triangles: [triangles.checked_mul(4)?, sides.checked_mul(2)?],
-                    rim: [one, two.checked_add(c.boundary.checked_sub(sides)?)?, three.checked_add(sides)?, more],
-                    ..c
-                }
-            }
-            Split::Dual { rounded } => {
-                let inner = c.edges.checked_sub(c.boundary)?;
-                let extra = if rounded { one } else { 0 };
-                // Vertices without a v-face: on a boundary with one or two faces, inside with two.
-                let bare = one.checked_add(two)?.checked_add(c.digons)?;
-                let boundary = c.boundary.checked_mul(2)?.checked_sub(one)?.checked_add(extra)?;
-                let spared = one.checked_add(two.checked_add(c.digons)?.checked_mul(2)?)?;
-                let corners = c
-                    .corners
-                    .checked_mul(2)?
-                    .checked_add(inner.checked_mul(4)?)?
-                    .checked_add(extra)?
-                    .checked_sub(spared)?;
-                Counts {
-                    vertices: c.corners.checked_add(extra)?,
-                    edges: corners.checked_add(boundary)? / 2,
-                    faces: c.faces.checked_add(inner)?.checked_add(c.vertices)?.checked_sub(bare)?,
-                    corners,
-                    boundary,
-                    // Not followed: triangles come of vertices too.
-                    triangles: [0; 2],
-                    rim: [one.checked_add(extra)?, two.checked_mul(2)?, three.checked_add(more)?.checked_mul(2)?, 0],
-                    digons: 0,
-                }
-            }
-            Split::Sqrt3 { trisect } => {
-                let boundary = if trisect { c.boundary.checked_mul(3)? } else { c.boundary };
-                let corners = c.corners.checked_mul(3)?;
-                let new = if trisect { c.boundary } else { 0 };
-                Counts {
-                    vertices: c.vertices.checked_add(c.faces)?.checked_add(new)?,
-                    edges: corners.checked_add(boundary)? / 2,
-                    faces: c.corners,
-                    corners,
-                    boundary,
-                    triangles: [c.corners, boundary],
-                    // A boundary vertex gains a face where edges turn and loses it where they are cut, which comes next:
-                    // only between the two are three and more told apart.
-                    rim: if trisect {
-                        [two, three, more.checked_add(new.checked_mul(2)?)?, 0]
-                    } else {
-                        [0, one, two, three.checked_add(more)?]
-                    },
-                    digons: c.digons,
-                }
-            }
-        };
-        Some(new)
     }
 
     /// Appends the faces of `c` behind the faces that the quad or triangle split makes of it.
@@ -209,7 +136,7 @@ impl Split {
         v
     }
 
-    /// The first of the children born on faces (quad split only).
+    /// The first of the children born on faces (quad split and poke).
     #[inline(always)]
     pub fn first_face_point(self, c: &impl Connectivity) -> u32 {
         c.vertices()
@@ -224,13 +151,16 @@ impl Split {
         }
     }
 
-    /// How many child vertices there are. Cost: constant, but for the mixed split and the dual one with rounded corners.
+    /// How many child vertices there are. Cost: constant, but where a list is needed.
     pub fn children(self, c: &impl Connectivity) -> u32 {
         match self {
             Split::Quad | Split::Triangle => self.first_edge_point(c) + c.edges(),
             Split::Mixed => c.vertices() + self.lone(c).len() as u32 + c.edges(),
             Split::Dual { .. } => c.half_edges() + self.lone(c).len() as u32,
             Split::Sqrt3 { trisect } => c.vertices() + c.faces() + if trisect { c.boundary_half_edges() } else { 0 },
+            Split::MidEdge { cut: false, .. } => c.edges() + c.boundary_half_edges(),
+            Split::MidEdge { .. } => c.edges() + self.lone(c).len() as u32,
+            Split::Poke => c.vertices() + c.faces(),
         }
     }
 
@@ -258,6 +188,8 @@ impl Split {
             _ if !crate::FULL => unreachable!("no scheme of this build stores levels"),
             Split::Sqrt3 { trisect } => stored::sqrt3(c, trisect),
             Split::Mixed => mixed::cut(c, &self.lone(c)),
+            Split::MidEdge { cut, .. } => mid_edge::faces(c, cut, &self.lone(c)),
+            Split::Poke => poke::faces(c),
             _ => stored::dual(c, &self.lone(c)),
         }
     }

@@ -26,7 +26,7 @@
 //!         b0-P1-P2-b1
 //! ```
 //!
-//! Cost: linear. Twins are arithmetic.
+//! Others have files of their own. Cost: linear. Twins are arithmetic.
 
 use crate::connect::UNMATCHED;
 use crate::topology::{Connectivity, Topology, boundary_rank, is_boundary};
@@ -73,6 +73,8 @@ impl Cut {
         let mate = match split {
             super::Split::Sqrt3 { trisect } => mates(parent, trisect),
             super::Split::Mixed => super::mixed::mates(parent),
+            super::Split::MidEdge { cut, .. } => super::mid_edge::mates(parent, cut, &split.lone(parent)),
+            super::Split::Poke => super::poke::mates(parent),
             _ => self.dual_mates(parent, &split.lone(parent)),
         };
         Topology::manifold(self.offsets.clone(), self.corners.clone(), vertices, mate)
