@@ -142,6 +142,7 @@ pub static CONTROLS: &[Control] = &[
         choices: &[
             choice("edge-and-corner", "Sharp corners", "boundary edge-and-corner"),
             choice("edge-only", "Smooth corners", "boundary edge-only"),
+            choice("none", "Left out", "boundary none"),
         ],
     },
     switch!(
@@ -268,6 +269,7 @@ pub fn values(document: &Document) -> Values {
     }
     if let Some(plan) = document.plan() {
         let rule = match plan.rules.boundary {
+            Boundary::None => "none",
             Boundary::EdgeOnly => "edge-only",
             Boundary::EdgeAndCorner => "edge-and-corner",
         };

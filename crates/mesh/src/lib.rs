@@ -26,8 +26,10 @@
 //! multiply-add, transcendental functions from `libm`, no hash map is iterated.
 
 mod connect;
+pub mod crease;
 mod face_varying;
 pub mod fairing;
+mod holes;
 pub mod limit;
 pub mod marks;
 pub mod mesh;
@@ -53,6 +55,7 @@ mod wire;
 /// and [`Plan::is_here`] says which plans need it.
 pub(crate) const FULL: bool = cfg!(feature = "full");
 
+pub use crease::Creases;
 pub use fairing::Fairing;
 pub use limit::{Limit, LimitRule, limit};
 pub use mesh::{Mesh, Stats, TopologyError};

@@ -111,6 +111,9 @@ pub(crate) fn resolve(
             out.holes = holes;
         }
     }
+    if !out.edge_sharpness.is_empty() {
+        tie(t, (&first, &next), &mut out);
+    }
     // All zero is the same as none.
     for sharpness in [&mut out.edge_sharpness, &mut out.vertex_sharpness] {
         if sharpness.iter().all(|&s| s == 0.0) {
@@ -124,6 +127,29 @@ pub(crate) fn resolve(
         notes.push(Note::LostMarks { count: lost.0, first: lost.1 });
     }
     out
+}
+
+/// Keeps copies of a vertex together where a crease ends at one of them. All lie on an edge that was cut apart, which is
+/// infinitely sharp, and only one of them sees the crease: so all become corners, for as long as it lasts; for ever where
+/// there are several, which may end one after the other.
+fn tie(t: &Topology, (first, next): (&[u32], &[u32]), marks: &mut Resolved) {
+    for &start in first.iter().filter(|&&v| v != NONE && next[v as usize] != NONE) {
+        let copies = || std::iter::successors(Some(start), |&v| Some(next[v as usize]).filter(|&n| n != NONE));
+        let (mut count, mut sharpness) = (0, 0.0f32);
+        for v in copies() {
+            t.turn(v, |h| {
+                let s = marks.edge_sharpness[t.edge(h) as usize];
+                if s > 0.0 && !is_boundary(t.twin(h)) {
+                    (count, sharpness) = (count + 1, s);
+                }
+            });
+        }
+        if count > 0 {
+            let sharpness = if count == 1 { sharpness } else { INFINITE };
+            let all = fill(&mut marks.vertex_sharpness, t.vertices() as usize, 0.0);
+            copies().for_each(|v| all[v as usize] = all[v as usize].max(sharpness));
+        }
+    }
 }
 
 impl Mesh {

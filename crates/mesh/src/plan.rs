@@ -11,8 +11,10 @@
 //! walked, predicted and refused without a mesh being touched. Cost: constant a step.
 
 use crate::FULL;
+use crate::crease::Creases;
 use crate::fairing::Fairing;
 use crate::limit::LimitRule;
+use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
@@ -91,15 +93,16 @@ impl Plan {
         FULL || self.is_common(mesh)
     }
 
-    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, colours and
-    /// texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
+    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, holes, colours
+    /// and texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
     /// place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
         let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
         let plain = self.scheme.common && self.later.is_empty();
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
         let bare = mesh.colors.is_empty() && mesh.uv.is_none();
-        closed && (self.level == 0 || (plain && smooth && bare))
+        let shown = mesh.holes.is_empty() && self.rules.boundary != Boundary::None;
+        closed && shown && (self.level == 0 || (plain && smooth && bare))
     }
 
     /// The run that makes step `step`.
@@ -159,15 +162,16 @@ impl Plan {
     }
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.
-    pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool]) -> Tags<'a> {
-        Tags { sharp, step: at, ..Tags::new(self.rules, step.params) }
+    pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool], creases: Option<&'a Creases>) -> Tags<'a> {
+        Tags { sharp, creases, step: at, ..Tags::new(self.rules, step.params) }
     }
 
     /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
     pub(crate) fn kept(&self, mesh: &Mesh) -> Vec<bool> {
         let t = &mesh.topology;
         let tags = Tags { sharp: &mesh.sharp, ..Tags::new(self.rules, [0.0; MOST_PARAMS]) };
-        (0..t.vertices()).map(|v| tags.is_sharp(t, v)).collect()
+        let kept = |v: u32| mesh.vertex_sharpness.get(v as usize).is_some_and(|&s| s >= INFINITE);
+        (0..t.vertices()).map(|v| kept(v) || tags.is_sharp(t, v)).collect()
     }
 
     /// The fairing at `level`, if any.

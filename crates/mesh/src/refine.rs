@@ -12,12 +12,14 @@
 //! Limit: 2^31 - 1 corners in the last level, whatever the budget.
 
 use crate::FULL;
+use crate::crease::Creases;
 use crate::fairing;
+use crate::holes;
 use crate::limit::{Limit, Projection, Projector, limit};
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues, complete};
-use crate::scheme::{Entry, Tags};
+use crate::scheme::{Boundary, Entry, Tags};
 use crate::sink::{Cursor, Record, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Counts};
@@ -124,7 +126,7 @@ pub fn grouped(n: u64) -> String {
 /// One more than the corners that fit 32-bit half-edges.
 const LARGEST: u64 = 1 << 31;
 
-/// Predicts what `plan` makes of `mesh`; none if it leaves 64 bits. Cost: constant (a level takes at most 32 steps).
+/// Predicts what `plan` makes of `mesh`, faces that are hidden included; none if it leaves 64 bits. Cost: constant (a level takes at most 32 steps).
 ///
 /// # Errors
 /// [`RefineError::NeedsTriangles`] and [`RefineError::NeedsTrianglesAt`].
@@ -158,12 +160,19 @@ pub fn predict(mesh: &Mesh, plan: &Plan) -> Result<Option<Prediction>, RefineErr
         let closing = closing + if plan.projects() { 12 * u128::from(c.0) } else { 0 };
         value * u128::from(c.0) + 4 * u128::from(c.1) + parent + stored + closing
     };
-    let mut bytes = track(counts[0], 12 + wide);
+    // How sharp the parent's edges and vertices are, and the result's if something is left to be done with it.
+    let marked = if mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty() {
+        0
+    } else {
+        let of = |c: Counts| 4 * u128::from(c.edges) + u128::from(c.vertices);
+        of(counts[0].1) + if plan.closes() { of(counts[0].0) } else { 0 }
+    };
+    let mut bytes = track(counts[0], 12 + wide) + marked;
     // Faces may be listed with where they begin and where they came from.
     bytes += u128::from(counts[0].0.faces)
         * if stores {
             8
-        } else if tracked {
+        } else if tracked || !mesh.holes.is_empty() || plan.rules.boundary == Boundary::None {
             4
         } else {
             0
@@ -293,28 +302,32 @@ impl Job {
                 .uv
                 .as_ref()
                 .map(|u| UvValues { values: u.values.clone(), corners: u.topology.origins().to_vec() });
-            return Refined {
+            let mut refined = Refined {
                 level,
                 counts: self.mesh.counts(),
+                hidden: 0,
                 points: self.geometry.points.unwrap_or_else(|| self.mesh.positions.clone()),
                 faces,
                 uv,
                 colors: self.mesh.colors.clone(),
                 parent_ranges: None,
                 vertex_parents: t.vertices(),
-                source: Vec::new(),
+                source: self.geometry.source,
                 kinds: Vec::new(),
                 limit_normals: None,
                 split: Split::Quad,
                 mesh: self.mesh,
             };
+            holes::leave_out(&mut refined);
+            return refined;
         }
         let split = self.steps.last().map_or(Split::Quad, |s| s.split);
         let before = self.geometry.before;
         let (v, f) = (before.vertices as u32, before.faces as u32);
-        Refined {
+        let mut refined = Refined {
             level,
             counts: self.geometry.counts,
+            hidden: 0,
             points: self.geometry.points.unwrap_or_default(),
             faces: match split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
@@ -336,7 +349,9 @@ impl Job {
             limit_normals: None,
             split,
             mesh: self.mesh,
-        }
+        };
+        holes::leave_out(&mut refined);
+        refined
     }
 }
 
@@ -358,7 +373,20 @@ pub fn evaluate<const N: usize>(
     mesh: &Mesh,
     plan: &Plan,
     values: &[[f64; N]],
-    inspect: impl FnMut(&Level<'_>),
+    mut inspect: impl FnMut(&Level<'_>),
+) -> Result<Vec<[f64; N]>, RefineError> {
+    evaluate_creased(mesh, plan, values, |level, _| inspect(level))
+}
+
+/// [`evaluate`], where `inspect` also learns how sharp the level is.
+///
+/// # Errors
+/// [`RefineError`], with no budget.
+pub fn evaluate_creased<const N: usize>(
+    mesh: &Mesh,
+    plan: &Plan,
+    values: &[[f64; N]],
+    inspect: impl FnMut(&Level<'_>, Option<&Creases>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
     let beyond = if plan.projects() { plan.beyond(mesh)? } else { None };
     run(mesh, plan, values, inspect, beyond, |scheme, on, points| {
@@ -376,7 +404,7 @@ pub fn evaluate_limit(mesh: &Mesh, plan: &Plan, points: &[[f64; 3]]) -> Result<L
     let mut found = Limit::default();
     let plan = Plan { limit: false, ..plan.clone() };
     let beyond = plan.beyond(mesh)?;
-    run(mesh, &plan, points, |_| (), beyond, |scheme, on, points| found = limit(scheme, on, points))?;
+    run(mesh, &plan, points, |_, _| (), beyond, |scheme, on, points| found = limit(scheme, on, points))?;
     Ok(found)
 }
 
@@ -386,7 +414,7 @@ fn run<const N: usize>(
     mesh: &Mesh,
     plan: &Plan,
     values: &[[f64; N]],
-    mut inspect: impl FnMut(&Level<'_>),
+    mut inspect: impl FnMut(&Level<'_>, Option<&Creases>),
     beyond: Option<Step>,
     mut last: impl FnMut(&'static Entry, (&Level<'_>, Split, Tags<'_>), &mut Vec<[f64; N]>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
@@ -395,11 +423,12 @@ fn run<const N: usize>(
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
     let mut knots = mesh.knots.clone();
+    let mut creases = Creases::of(mesh, &mesh.topology);
     for at in 0..=plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
         let sharp = sharp_at(&steps, at, mesh, &kept);
         if let Some(fairing) = plan.fairing(at) {
-            let tags = Tags { sharp, ..Tags::new(plan.rules, Default::default()) };
+            let tags = Tags { sharp, creases: creases.as_ref(), ..Tags::new(plan.rules, Default::default()) };
             for pass in 0..fairing.passes() {
                 let mut new = old.clone();
                 let mut take = |v: u32, row: &[(Source, f64)], _| new[v as usize] = weigh(row, |s| of(&old, &[], s));
@@ -410,15 +439,15 @@ fn run<const N: usize>(
         }
         let Some(step) = steps.get(at as usize) else {
             if let Some(step) = &beyond {
-                let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp) };
+                let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
                 last(step.scheme, (&level, step.split, tags), &mut old);
             }
             break;
         };
-        inspect(&level);
+        inspect(&level, creases.as_ref());
         let split = step.split;
         let lone = split.lone(&level);
-        let tags = Tags { lone: &lone, knots: &knots, ..plan.tags(step, at, sharp) };
+        let tags = Tags { lone: &lone, knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
         let mut new = vec![[0.0; N]; split.children(&level) as usize];
         let mut take = |child: u32, row: &[(Source, f64)], offset: [f64; 3]| {
             let mut sum = weigh(row, |s| of(&old, &new, s));
@@ -435,7 +464,9 @@ fn run<const N: usize>(
             let mut at = 0;
             while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
             knots = split.knots(&level, &knots, &lone);
-            owned = Some(below.stored_for(next));
+            let below = below.stored_for(next);
+            creases = creases.and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
+            owned = Some(below);
         }
     }
     Ok(old)

@@ -75,8 +75,10 @@ pub struct UvValues {
 pub struct Refined {
     /// Which level.
     pub level: u32,
-    /// Its counts.
+    /// Its counts, faces that are not shown among them.
     pub counts: Counts,
+    /// How many faces are not shown: children of holes, and of faces at a rim that is left out. They are not in `faces`.
+    pub hidden: u64,
     /// One point a vertex, in the recursive order (old | faces | edges).
     pub points: Vec<[f32; 3]>,
     /// The faces.

@@ -11,14 +11,17 @@
 //! [`Plan::is_here`] leaves to builds with everything stands behind `FULL` here.
 
 use crate::FULL;
+use crate::crease::Creases;
 use crate::face_varying;
 use crate::fairing;
+use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refine::sharp_at;
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Either, Eval, Source};
+use crate::split::stored::Cut;
 use crate::split::{FaceKind, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
 
@@ -113,6 +116,8 @@ pub(crate) struct Track {
     corner: Vec<bool>,
     /// Texture coordinates of `level` that stay.
     pins: Vec<bool>,
+    /// How sharp `level` is.
+    creases: Option<Creases>,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
     /// Knot intervals of `level`, but at level 0, where the mesh has them.
@@ -168,6 +173,7 @@ impl Track {
             before: Counts::default(),
             corner: Vec::new(),
             pins: Vec::new(),
+            creases: None,
             lone: Vec::new(),
             limit: limit.map(Projection::new),
             knots: Vec::new(),
@@ -176,7 +182,12 @@ impl Track {
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
             track.pins = face_varying::pins(mesh, channel, &plan.rules);
         }
+        if !uv {
+            track.source = holes::sources(mesh, plan.rules.boundary);
+            track.listed |= !track.source.is_empty();
+        }
         if !idle {
+            track.creases = Creases::of(mesh, track.base(mesh));
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
         if FULL && !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
@@ -222,6 +233,12 @@ impl Track {
             let next = self.work(&level, mesh, plan, steps, quota);
             match next {
                 Some(next) => {
+                    let split = steps[self.level as usize - 1].split;
+                    self.creases = self
+                        .creases
+                        .take()
+                        .zip(next.as_ref())
+                        .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
                     self.half_edges = next;
                     let level = self.half_edges.take();
                     self.begin(&level.as_ref().map_or(Level::Base(base), Owned::view), plan, steps);
@@ -254,7 +271,8 @@ impl Track {
         if FULL && let Stage::Fair(pass, cursor) = &mut self.stage {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
-            let tags = Tags { sharp, ..Tags::new(plan.rules, Default::default()) };
+            let creases = self.creases.as_ref();
+            let tags = Tags { sharp, creases, ..Tags::new(plan.rules, Default::default()) };
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
             fairing::rules(level, *pass, tags, &mut Either::Eval(&mut sink));
             if sink.done() {
@@ -271,7 +289,7 @@ impl Track {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let knots = if self.level == 0 { &mesh.knots } else { &self.knots };
-            let tags = Tags { knots, ..plan.tags(limit.step(), self.level, sharp) };
+            let tags = Tags { knots, ..plan.tags(limit.step(), self.level, sharp, self.creases.as_ref()) };
             if limit.work((level, tags), old, &mut self.new_points, at, quota) {
                 std::mem::swap(old, &mut self.new_points);
                 self.stage = Stage::Done;
@@ -280,7 +298,7 @@ impl Track {
         }
         let at = steps.get(self.level as usize)?;
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
-        let tags = plan.tags(at, self.level, sharp);
+        let tags = plan.tags(at, self.level, sharp, self.creases.as_ref());
         let tags = if self.uv {
             // Corners are among the pins, and no others.
             Tags { rules: Rules { boundary: Boundary::EdgeOnly, ..tags.rules }, lone: &self.lone, ..tags }
@@ -322,7 +340,7 @@ impl Track {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
                 let cut = split.cut(t);
                 let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32)));
-                self.source = descend(&self.source, cut.source);
+                self.source = self.behind(t, split, &cut);
                 (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
                 if closes {
                     self.knots = split.knots(level, tags.knots, &self.lone);
@@ -351,7 +369,7 @@ impl Track {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
                 let cut = split.cut(t);
                 let stored = cut.connect(t, split, children as u32);
-                self.source = descend(&self.source, cut.source);
+                self.source = self.behind(t, split, &cut);
                 self.knots = split.knots(level, tags.knots, &self.lone);
                 self.advance(split);
                 return Some(Some(Owned::Stored(stored)));
@@ -371,12 +389,19 @@ impl Track {
         None
     }
 
+    /// What is behind the faces that a stored level is cut into.
+    fn behind(&self, t: &Topology, split: Split, cut: &Cut) -> Vec<u32> {
+        let mut source = holes::descend(&self.source, cut.source.clone());
+        holes::hide_between(t, split, &self.source, cut, &mut source);
+        source
+    }
+
     /// Lists what the faces of the next level came from, if that is wanted, of a split that does not say so itself.
     fn list(&mut self, level: &Level<'_>, split: Split) {
         if FULL && self.listed && !self.uv {
             let mut parents = Vec::new();
             split.parents(level, &mut parents);
-            self.source = descend(&self.source, parents);
+            self.source = holes::descend(&self.source, parents);
         }
     }
 
@@ -389,14 +414,6 @@ impl Track {
         }
         self.wide = std::mem::take(&mut self.new_wide);
     }
-}
-
-/// The mesh's faces behind a level's, from those behind its parent's (empty where they are the same).
-fn descend(parent: &[u32], mut source: Vec<u32>) -> Vec<u32> {
-    if !parent.is_empty() {
-        source.iter_mut().for_each(|f| *f = parent[*f as usize]);
-    }
-    source
 }
 
 /// Makes `buffer` of that length, if it is not yet. Asking for zeroed memory beats writing zeros: fresh pages have them.

@@ -132,7 +132,7 @@ impl Plan {
             params: first.params,
             later: from.list(run)?,
             rules: Rules {
-                boundary: one_of(&mut from, &[Boundary::EdgeOnly, Boundary::EdgeAndCorner])?,
+                boundary: one_of(&mut from, &[Boundary::None, Boundary::EdgeOnly, Boundary::EdgeAndCorner])?,
                 decay: one_of(&mut from, &[Decay::Uniform, Decay::Chaikin])?,
                 triangle: one_of(&mut from, &[TriangleRule::CatmullClark, TriangleRule::Smooth])?,
                 face_varying: one_of(&mut from, &sets)?,
@@ -150,6 +150,7 @@ impl Refined {
         let Refined {
             level,
             counts,
+            hidden,
             points,
             faces,
             uv,
@@ -165,6 +166,7 @@ impl Refined {
         let mut out = Writer::default();
         out.number(level);
         put_counts(&mut out, &counts);
+        out.array(&[hidden]);
         out.array(&points);
         drop(points);
         let (degree, offsets, corners) = match faces {
@@ -202,6 +204,7 @@ impl Refined {
         Ok(Refined {
             level: from.number()?,
             counts: counts(&mut from)?,
+            hidden: from.exactly::<u64, 1>()?[0],
             points: from.array()?,
             faces: match (from.number()?, from.array()?, from.array()?) {
                 (0, offsets, corners) => Faces::Polygons { offsets, corners },

@@ -130,15 +130,22 @@ fn what_the_first_module_can_make() {
     (textured.edge_sharpness, textured.vertex_sharpness, textured.colors) = Default::default();
     let mut holed = colored.clone();
     holed.colors.clear();
+    assert!(holed.holes.contains(&true));
+    let mut knotted = holed.clone();
+    knotted.holes.clear();
+    let mut whole = (*creased).clone();
+    whole.holes.clear();
     for scheme in SCHEMES {
         let plan = Plan::new(scheme, Boundary::default(), 2);
         let common = ["catmull-clark", "loop", "linear"].contains(&scheme.info.id);
         assert_eq!(plan.is_common(&plain), common, "{}", scheme.info.id);
-        assert_eq!(plan.is_common(&holed), common, "{}: holes and knots are no matter", scheme.info.id);
-        for mesh in [&*creased, &colored, &textured] {
+        assert_eq!(plan.is_common(&knotted), common, "{}: knots are no matter", scheme.info.id);
+        for mesh in [&*creased, &colored, &textured, &holed, &whole] {
             assert!(!plan.is_common(mesh), "{}", scheme.info.id);
         }
-        assert!(plan.to(0).is_common(&creased), "level 0 is the mesh itself");
+        assert!(plan.to(0).is_common(&whole), "level 0 is the mesh itself");
+        assert!(!plan.to(0).is_common(&holed), "but for its holes");
+        assert!(!Plan::new(scheme, Boundary::None, 0).is_common(&plain));
         let fair = |at| Plan { fairings: vec![Fairing { at, iterations: 1 }], ..plan.clone() };
         assert!(!fair(2).is_common(&plain) && !fair(0).to(0).is_common(&plain));
         assert_eq!(fair(3).is_common(&plain), common, "what comes after the last level is not made");

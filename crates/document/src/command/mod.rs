@@ -215,6 +215,7 @@ impl fmt::Display for Command {
             Command::TriangleRule(TriangleRule::CatmullClark) => f.write_str(" catmull-clark"),
             Command::TriangleRule(TriangleRule::Smooth) => f.write_str(" smooth"),
             Command::FaceVarying(rule) => write!(f, " {}", rows::face_varying_word(*rule)),
+            Command::Boundary(Boundary::None) => f.write_str(" none"),
             Command::Boundary(Boundary::EdgeOnly) => f.write_str(" edge-only"),
             Command::Boundary(Boundary::EdgeAndCorner) => f.write_str(" edge-and-corner"),
             Command::Level(n) | Command::Version(n) => write!(f, " {n}"),

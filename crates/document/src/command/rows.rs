@@ -220,13 +220,14 @@ pub static COMMANDS: &[Spec] = &[
     Spec {
         name: "boundary",
         class: Class::Setting,
-        args: &[arg("RULE", Kind::Word(&["edge-only", "edge-and-corner"]))],
+        args: &[arg("RULE", Kind::Word(&["none", "edge-only", "edge-and-corner"]))],
         flags: &[],
         keys: Keys::None,
-        summary: "smooth the rim of an open model everywhere, or keep its corners",
-        detail: "",
+        summary: "smooth the rim of an open model everywhere, keep its corners, or leave the faces at it out",
+        detail: "With none the rim is smoothed as with edge-only, and faces that touch it are refined and not shown.",
         example: "boundary edge-only",
         build: |p| match p.values.into_iter().next()? {
+            Value::Word("none") => Some(Command::Boundary(Boundary::None)),
             Value::Word("edge-only") => Some(Command::Boundary(Boundary::EdgeOnly)),
             Value::Word(_) => Some(Command::Boundary(Boundary::EdgeAndCorner)),
             _ => None,

@@ -192,6 +192,7 @@ impl Engine {
             *self.document.view_mut() = view;
         }
         let rule = match shown.plan.rules.boundary {
+            limn_mesh::Boundary::None => "none",
             limn_mesh::Boundary::EdgeOnly => "edge-only",
             limn_mesh::Boundary::EdgeAndCorner => "edge-and-corner",
         };

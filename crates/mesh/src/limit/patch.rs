@@ -225,6 +225,6 @@ pub(super) struct Patch {
 impl Patch {
     /// The rules' tags for this patch.
     pub fn tags<'a>(&'a self, tags: Tags<'a>, lone: &'a [u32]) -> Tags<'a> {
-        Tags { sharp: &self.sharp, knots: &self.knots, lone, ..tags }
+        Tags { sharp: &self.sharp, creases: None, knots: &self.knots, lone, ..tags }
     }
 }

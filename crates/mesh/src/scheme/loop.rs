@@ -17,11 +17,11 @@
 //!
 //! Cost: about 12 ns an output face (half a vertex each). Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, kept_or_curve};
+use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, edge_point, vertex_point};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary};
+use crate::topology::Connectivity;
 
 /// See the module.
 #[derive(Debug)]
@@ -72,20 +72,15 @@ impl Scheme for Loop {
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            let twin = c.twin(h);
-            let (a, b) = (c.origin(h), c.origin(c.next(h)));
-            if is_boundary(twin) {
-                row.vertex(a, 0.5);
-                row.vertex(b, 0.5);
-            } else {
-                row.vertex(a, 0.375);
-                row.vertex(b, 0.375);
+            edge_point(c, (e, h), tags, row, |row| {
+                row.vertex(c.origin(h), 0.375);
+                row.vertex(c.origin(c.next(h)), 0.375);
                 row.vertex(c.origin(c.prev(h)), 0.125);
-                row.vertex(c.origin(c.prev(twin)), 0.125);
-            }
+                row.vertex(c.origin(c.prev(c.twin(h))), 0.125);
+            });
         });
         sink.pass(0, c.vertices(), |v, row| {
-            if !kept_or_curve(c, v, tags, row) {
+            vertex_point(c, v, tags, row, |row| {
                 let mut n = 0u32;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);
@@ -94,7 +89,7 @@ impl Scheme for Loop {
                 let beta = weight(n, tags);
                 row.scale(beta);
                 row.vertex(v, 1.0 - f64::from(n) * beta);
-            }
+            });
         });
     }
 }

@@ -45,6 +45,8 @@ pub use sqrt3::Sqrt3;
 
 pub(crate) use loop_::weight as loop_weight;
 
+use crate::FULL;
+use crate::crease::{self, Creases};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{FaceShape, Level, Split};
@@ -130,7 +132,7 @@ impl Info {
     pub fn split(&self, shape: FaceShape, boundary: Boundary, _params: &[f64; MOST_PARAMS]) -> Option<Split> {
         match (self.accepts, shape == FaceShape::Triangles) {
             (Accepts::Triangles, false) => None,
-            _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary == Boundary::EdgeOnly }),
+            _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary != Boundary::EdgeAndCorner }),
             _ if self.family == Family::Mixed && shape == FaceShape::Polygons => Some(Split::Mixed),
             _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
             _ if self.family == Family::MidEdge => {
@@ -146,6 +148,8 @@ impl Info {
 /// What happens at the rim of an open mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
+    /// As [`Boundary::EdgeOnly`], and faces that touch the rim are refined but not shown.
+    None,
     /// A smooth boundary curve, rounded at corners too.
     EdgeOnly,
     /// A smooth boundary curve; vertices with one face are corners and stay.
@@ -213,6 +217,8 @@ pub struct Tags<'a> {
     pub step: u32,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
+    /// How sharp edges and vertices of the level are; none if none is marked.
+    pub creases: Option<&'a Creases>,
     /// Corners that the split treats by name, by their half-edges: of the dual split those with two images, children from
     /// `half_edges()` on; of the mid-edge split those that are kept, children from `edges()` on.
     pub lone: &'a [u32],
@@ -225,7 +231,7 @@ pub struct Tags<'a> {
 impl Tags<'_> {
     /// Tags of a mesh without marks, at level 0.
     pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        Tags { rules, step: 0, sharp: &[], lone: &[], knots: &[], params }
+        Tags { rules, step: 0, sharp: &[], creases: None, lone: &[], knots: &[], params }
     }
 
     /// Whether `v`, which starts its turn at `start`, is kept.
@@ -234,7 +240,10 @@ impl Tags<'_> {
         if (v as usize) < self.sharp.len() && self.sharp[v as usize] {
             return true;
         }
-        if self.rules.boundary == Boundary::EdgeOnly {
+        if FULL && self.creases.is_some_and(|creases| creases.keeps(v)) {
+            return true;
+        }
+        if self.rules.boundary != Boundary::EdgeAndCorner {
             return false;
         }
         let start = c.vertex_half_edge(v);
@@ -284,9 +293,8 @@ impl PartialEq for Entry {
 const fn entry<S: Scheme>() -> Entry {
     // Where there is nothing, `Plan::is_here` says no, and whoever refines asks it first.
     let eval: EvalFn =
-        if S::COMMON || crate::FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
-    let record: RecordFn =
-        if crate::FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
+        if S::COMMON || FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
+    let record: RecordFn = if FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
     Entry { info: S::INFO, common: S::COMMON, limit: S::LIMIT, eval, record }
 }
 
@@ -384,4 +392,34 @@ fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: Tags<'_>, row: &mut impl 
         row.vertex(v, 0.75);
     }
     true
+}
+
+/// States the rule of `v` with its marks; `smooth` states the scheme's own, of inner vertices.
+#[inline(always)]
+fn vertex_point<C: Connectivity, R: Row>(c: &C, v: u32, tags: Tags<'_>, row: &mut R, smooth: impl Fn(&mut R)) {
+    match tags.creases {
+        Some(creases) if FULL && creases.marked(v) => crease::vertex_point(c, v, &tags, row, smooth),
+        _ if kept_or_curve(c, v, tags, row) => {}
+        _ => smooth(row),
+    }
+}
+
+/// States the point of edge `e`, of half-edge `h`: in the middle on a boundary, on a crease as far as it is sharp; `smooth`
+/// states the scheme's own.
+#[inline(always)]
+fn edge_point<C: Connectivity, R: Row>(
+    c: &C,
+    (e, h): (u32, u32),
+    tags: Tags<'_>,
+    row: &mut R,
+    smooth: impl Fn(&mut R),
+) {
+    if is_boundary(c.twin(h)) {
+        row.vertex(c.origin(h), 0.5);
+        row.vertex(c.origin(c.next(h)), 0.5);
+    } else if FULL && tags.creases.is_some_and(|creases| creases.edge(e) > 0.0) {
+        crease::edge_point(c, h, &tags, row, smooth);
+    } else {
+        smooth(row);
+    }
 }

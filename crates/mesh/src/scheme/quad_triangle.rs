@@ -17,15 +17,15 @@
 //! with which quads alone are exactly Catmull-Clark and triangles alone exactly Loop: such levels run as these schemes.
 //! Faces of more corners count as quads, as in Catmull-Clark, and become quads.
 //!
-//! The boundary is the uniform cubic B-spline of its curve. C2 among quads and among triangles, C1 where they meet and at
+//! The boundary is the uniform cubic B-spline of its curve; creases are those of both ([`crate::crease`]). C2 among quads and among triangles, C1 where they meet and at
 //! extraordinary vertices (the pass that Schaefer and Warren's "On C2 triangle/quad subdivision" of 2005 puts first, which
 //! makes the seam C2, is not part of it). Cost: about 100 ns an output face of a mixed mesh.
 
 use super::loop_::beta;
-use super::{Accepts, CatmullClark, Entry, Family, Info, Loop, Scheme, Tags, entry, kept_or_curve};
+use super::{Accepts, CatmullClark, Entry, Family, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary};
+use crate::topology::Connectivity;
 
 /// See the module.
 #[derive(Debug)]
@@ -73,46 +73,47 @@ impl Scheme for QuadTriangle {
         sink.pass(c.vertices(), pointed.len() as u32, |i, row| centroid(c, pointed[i as usize], 1.0, row));
         sink.pass(c.vertices() + pointed.len() as u32, c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            let (a, b, twin) = (c.origin(h), c.origin(c.next(h)), c.twin(h));
-            if is_boundary(twin) {
-                return row.pair(a, b, 0.5);
-            }
-            for side in [h, twin] {
-                if is_triangle(c, side) {
-                    row.pair(a, b, 3.0 / 16.0);
-                    row.vertex(c.origin(c.prev(side)), 0.125);
-                } else {
-                    row.pair(a, b, 0.125);
-                    centroid(c, c.face(side), 0.25, row);
-                }
-            }
-        });
-        sink.pass(0, c.vertices(), |v, row| {
-            if kept_or_curve(c, v, tags, row) {
-                return;
-            }
-            let (mut quads, mut triangles) = (0u32, 0u32);
-            c.turn(v, |h| {
-                row.vertex(c.origin(c.next(h)), 1.0);
-                if is_triangle(c, h) {
-                    triangles += 1;
-                } else {
-                    quads += 1;
-                    centroid(c, c.face(h), 1.0, row);
+            edge_point(c, (e, h), tags, row, |row| {
+                for side in [h, c.twin(h)] {
+                    if is_triangle(c, side) {
+                        row.pair(c.origin(h), c.origin(c.next(h)), 3.0 / 16.0);
+                        row.vertex(c.origin(c.prev(side)), 0.125);
+                    } else {
+                        row.pair(c.origin(h), c.origin(c.next(h)), 0.125);
+                        centroid(c, c.face(side), 0.25, row);
+                    }
                 }
             });
-            if quads == 0 {
-                row.scale(beta(triangles));
-                return row.vertex(v, 1.0 - f64::from(triangles) * beta(triangles));
-            }
-            let (q, t) = (f64::from(quads), f64::from(triangles));
-            let s = 3.0 * q + 2.0 * t;
-            let share = 12.0 / (s * s);
-            row.scale(0.75 * share);
-            // Its own share, and what the midpoints of its edges have of it.
-            row.vertex(v, 1.0 - 12.0 / s + share * (0.75 * q + 0.5 * t + 0.75 * (q + t)));
+        });
+        sink.pass(0, c.vertices(), |v, row| {
+            vertex_point(c, v, tags, row, |row| own_rule(c, v, row));
         });
     }
+}
+
+/// The rule of an inner vertex.
+#[inline(always)]
+fn own_rule<C: Connectivity>(c: &C, v: u32, row: &mut impl Row) {
+    let (mut quads, mut triangles) = (0u32, 0u32);
+    c.turn(v, |h| {
+        row.vertex(c.origin(c.next(h)), 1.0);
+        if is_triangle(c, h) {
+            triangles += 1;
+        } else {
+            quads += 1;
+            centroid(c, c.face(h), 1.0, row);
+        }
+    });
+    if quads == 0 {
+        row.scale(beta(triangles));
+        return row.vertex(v, 1.0 - f64::from(triangles) * beta(triangles));
+    }
+    let (q, t) = (f64::from(quads), f64::from(triangles));
+    let s = 3.0 * q + 2.0 * t;
+    let share = 12.0 / (s * s);
+    row.scale(0.75 * share);
+    // Its own share, and what the midpoints of its edges have of it.
+    row.vertex(v, 1.0 - 12.0 / s + share * (0.75 * q + 0.5 * t + 0.75 * (q + t)));
 }
 
 /// Whether the face of `h` is a triangle.

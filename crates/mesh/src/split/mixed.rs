@@ -45,12 +45,21 @@ pub(super) fn cut(c: &Topology, pointed: &[u32]) -> Cut {
     cut
 }
 
+/// The child of half-edge `h` at its corner, and the one that arrives at the next vertex.
+pub(crate) fn halves(c: &impl Connectivity, h: u32) -> [u32; 2] {
+    let face = c.face_half_edges(c.face(h));
+    match face.len() {
+        3 => [3 * h + face.start, 3 * c.next(h) + face.start + 2],
+        _ => [4 * h, 4 * c.next(h) + 3],
+    }
+}
+
 /// The twins of [`cut`]'s faces.
 pub(super) fn mates(c: &Topology) -> Vec<u32> {
     let is_triangle = |h: u32| c.face_half_edges(c.face(h)).len() == 3;
-    // The child at corner h, and the children on both halves of side h, from v and to the next vertex.
-    let corner = |h: u32| if is_triangle(h) { 3 * h + c.face_half_edges(c.face(h)).start } else { 4 * h };
-    let to_next = |h: u32| corner(c.next(h)) + if is_triangle(h) { 2 } else { 3 };
+    // The children on both halves of side h, from v and to the next vertex.
+    let corner = |h: u32| halves(c, h)[0];
+    let to_next = |h: u32| halves(c, h)[1];
     let mut mate = vec![UNMATCHED; 4 * c.half_edges() as usize];
     let mut join = |a: u32, b: u32| (mate[a as usize], mate[b as usize]) = (b, a);
     for h in 0..c.half_edges() {

@@ -20,7 +20,7 @@
 
 mod counts;
 mod mid_edge;
-mod mixed;
+pub(crate) mod mixed;
 mod poke;
 mod quad;
 pub(crate) mod stored;

@@ -1,0 +1,392 @@
+//! Creases: how sharp the edges and vertices of a level are, and what that makes of its points.
+//!
+//! As OpenSubdiv defines them (T. DeRose, M. Kass, T. Truong, "Subdivision surfaces in character animation", 1998, and its
+//! `Sdc::Crease`). An edge's sharpness s says for how many levels it is a crease; from 10 on, and on a boundary, for ever.
+//!
+//! ```text
+//!   sharp edges at v    0 smooth    1 dart    2 crease    3 and more corner          a sharp vertex is a corner
+//!
+//!        a                 smooth, dart   the scheme's own rule
+//!        | s > 0           crease         3/4 v + 1/8 (a + b)
+//!        v                 corner         v
+//!        | s > 0           edge point     the middle of a sharp edge, else the scheme's own
+//!        b
+//! ```
+//!
+//! *Decay.* Both halves of an edge lose 1. By Chaikin's rule the half at v first becomes 3/4 s + 1/4 of the mean of the other
+//! semi-sharp edges at v.
+//!
+//! *Transition.* Where edges end within a step (and with them the rule at v changes), v takes both rules: the sharp one by
+//! the mean sharpness of what ends, at most 1, and the softer one by the rest. An edge point does so by its edge's s.
+//!
+//! Memory: 4 bytes an edge and 1 a vertex of a level; levels without marks have none of it. Cost: linear in the sharp edges
+//! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Limit: splits
+//! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.
+
+use crate::FULL;
+use crate::marks::INFINITE;
+use crate::mesh::Mesh;
+use crate::scheme::{Decay, Tags};
+use crate::sink::Row;
+use crate::split::{Level, Split, mixed};
+use crate::topology::{Connectivity, Topology, is_boundary};
+
+/// How sharp a level is. Edges by their ids; boundary edges are not in it, because they always are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Creases {
+    /// One an edge, 0 smooth.
+    edges: Vec<f32>,
+    /// The edges that are sharp.
+    sharp: Vec<u32>,
+    /// One a vertex: see the constants below.
+    flags: Vec<u8>,
+    /// Of the first vertices; later ones are smooth.
+    vertices: Vec<f32>,
+}
+
+/// The bits of a flag that count sharp edges, at most 3. One of them on a boundary counts as 3: with its two edges it makes
+/// a corner.
+const EDGES: u8 = 3;
+/// A sharp vertex.
+const SHARP: u8 = 4;
+/// An infinitely sharp vertex.
+const KEPT: u8 = 8;
+
+/// What a vertex is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// No sharp edge.
+    Smooth,
+    /// One.
+    Dart,
+    /// Two: these, counted as [`spokes`] visits them, the lower first.
+    Crease([u32; 2]),
+    /// Three or more, or the vertex itself is sharp.
+    Corner,
+}
+
+/// The decay of a sharpness by one.
+fn less(s: f32) -> f32 {
+    if s >= INFINITE { s } else { (s - 1.0).max(0.0) }
+}
+
+impl Creases {
+    /// The marks of `mesh` on `t`, its own half-edges or those of its texture coordinates; none if nothing is sharp. Cost:
+    /// linear where something is.
+    pub fn of(mesh: &Mesh, t: &Topology) -> Option<Creases> {
+        if !FULL || mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty() {
+            return None;
+        }
+        let own = &mesh.topology;
+        let mut out = Creases::with_room(t);
+        if !mesh.edge_sharpness.is_empty() {
+            for e in 0..t.edges() {
+                let h = t.edge_half_edge(e);
+                out.sharpen(t, h, mesh.edge_sharpness[own.edge(h) as usize]);
+            }
+        }
+        if !mesh.vertex_sharpness.is_empty() {
+            let of = |v: u32| mesh.vertex_sharpness[own.origin(t.vertex_half_edge(v)) as usize];
+            out.stay((0..t.vertices()).map(of).collect());
+        }
+        out.some()
+    }
+
+    fn with_room(c: &impl Connectivity) -> Creases {
+        Creases { edges: vec![0.0; c.edges() as usize], flags: vec![0; c.vertices() as usize], ..Creases::default() }
+    }
+
+    /// Notes the sharpness of the edge of `h`.
+    fn sharpen(&mut self, c: &impl Connectivity, h: u32, s: f32) {
+        if s <= 0.0 || is_boundary(c.twin(h)) {
+            return;
+        }
+        let e = c.edge(h);
+        self.edges[e as usize] = s;
+        self.sharp.push(e);
+        for v in [c.origin(h), c.origin(c.next(h))] {
+            let more = if is_boundary(c.twin(c.vertex_half_edge(v))) { 3 } else { 1 };
+            let flag = &mut self.flags[v as usize];
+            *flag = (*flag & !EDGES) | ((*flag & EDGES) + more).min(3);
+        }
+    }
+
+    /// Notes the sharpness of the first vertices.
+    fn stay(&mut self, vertices: Vec<f32>) {
+        for (flag, &s) in self.flags.iter_mut().zip(&vertices) {
+            *flag |= if s > 0.0 { SHARP } else { 0 } | if s >= INFINITE { KEPT } else { 0 };
+        }
+        self.vertices = if vertices.iter().any(|&s| s > 0.0) { vertices } else { Vec::new() };
+    }
+
+    fn some(self) -> Option<Creases> {
+        (!self.sharp.is_empty() || !self.vertices.is_empty()).then_some(self)
+    }
+
+    /// What is left one level further. `child` is `parent` after `split`. None if nothing is.
+    pub fn below(&self, parent: &Level<'_>, split: Split, child: &Level<'_>, decay: Decay) -> Option<Creases> {
+        if !FULL || !split.keeps_vertices() {
+            return None;
+        }
+        let mut out = Creases::with_room(child);
+        // The halves of half-edge h, at its origin and at its target.
+        let halves = |h: u32| match split {
+            Split::Quad => Some([4 * h, 4 * parent.next(h) + 3]),
+            Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
+            Split::Mixed => Some(mixed::halves(parent, h)),
+            Split::Poke => Some([3 * h; 2]),
+            Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } => None,
+        };
+        for &e in &self.sharp {
+            let h = parent.edge_half_edge(e);
+            let s = self.edges[e as usize];
+            let Some(halves) = halves(h) else { break };
+            if split == Split::Poke {
+                out.sharpen(child, halves[0], s);
+                continue;
+            }
+            for (half, end) in halves.into_iter().zip([h, parent.next(h)]) {
+                out.sharpen(child, half, self.half(parent, parent.origin(end), s, decay));
+            }
+        }
+        out.stay(self.vertices.iter().map(|&s| if split == Split::Poke { s } else { less(s) }).collect());
+        out.some()
+    }
+
+    /// The sharpness of edge `e`, which is not on a boundary.
+    #[inline(always)]
+    pub fn edge(&self, e: u32) -> f32 {
+        self.edges[e as usize]
+    }
+
+    /// The sharpness of the edge of `h`, [`INFINITE`] on a boundary.
+    pub fn along(&self, c: &impl Connectivity, h: u32) -> f32 {
+        if is_boundary(c.twin(h)) { INFINITE } else { self.edges[c.edge(h) as usize] }
+    }
+
+    /// The sharpness of vertex `v`, without what the boundary rule makes of it.
+    pub fn vertex(&self, v: u32) -> f32 {
+        self.vertices.get(v as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Whether rules for vertices without marks do not hold for `v`.
+    #[inline(always)]
+    pub(crate) fn marked(&self, v: u32) -> bool {
+        self.flags[v as usize] > 1
+    }
+
+    /// Whether `v` itself is infinitely sharp.
+    #[inline(always)]
+    pub(crate) fn keeps(&self, v: u32) -> bool {
+        self.flags[v as usize] & KEPT != 0
+    }
+
+    /// The sharpness at `v` of the child of an edge of sharpness `s`.
+    fn half(&self, c: &impl Connectivity, v: u32, s: f32, decay: Decay) -> f32 {
+        if decay == Decay::Uniform || s >= INFINITE {
+            return less(s);
+        }
+        let (mut sum, mut count) = (0.0, 0);
+        spokes(c, v, |h, _| {
+            let s = self.along(c, h);
+            if s > 0.0 && s < INFINITE {
+                (sum, count) = (sum + s, count + 1);
+            }
+        });
+        chaikin(s, sum, count)
+    }
+}
+
+/// Chaikin's decay of `s`, one of `count` semi-sharp edges whose sharpness is `sum` together.
+fn chaikin(s: f32, sum: f32, count: u32) -> f32 {
+    let mixed = if count > 1 { 0.75 * s + 0.25 * ((sum - s) / (count - 1) as f32) } else { s };
+    (mixed - 1.0).max(0.0)
+}
+
+/// Visits a half-edge of every edge at `v`, in the order of the turn, with the vertex at the other end.
+#[inline(always)]
+pub fn spokes<C: Connectivity>(c: &C, v: u32, mut visit: impl FnMut(u32, u32)) {
+    if let Some(arriving) = c.turn(v, |h| visit(h, c.origin(c.next(h)))) {
+        visit(arriving, c.origin(arriving));
+    }
+}
+
+/// What `v` is on this level, boundary and vertices that are kept included. Cost: the valence.
+pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
+    match tags.creases {
+        _ if tags.is_sharp(c, v) => At::Corner,
+        Some(creases) if creases.vertex(v) > 0.0 => At::Corner,
+        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v, |s| s).at(),
+        _ if is_boundary(c.twin(c.vertex_half_edge(v))) => {
+            let mut faces = 0;
+            c.turn(v, |_| faces += 1);
+            At::Crease([0, faces])
+        }
+        _ => At::Smooth,
+    }
+}
+
+/// The two vertices at the ends of the crease through the marked vertex `v`; none if it is a corner.
+#[inline(never)]
+pub(crate) fn ends<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Option<[u32; 2]> {
+    let creases = tags.creases.filter(|creases| creases.vertex(v) <= 0.0)?;
+    let found = creases.survey(c, v, |s| s);
+    (found.count == 2).then_some(found.ends)
+}
+
+/// The sharp edges at a vertex: how many, the first two by place and by the vertices that they lead to; and how many of them
+/// are semi-sharp, with the sum of their sharpness.
+struct Survey {
+    count: usize,
+    places: [u32; 2],
+    ends: [u32; 2],
+    semi: u32,
+    sum: f32,
+}
+
+impl Survey {
+    fn at(&self) -> At {
+        match self.count {
+            0 => At::Smooth,
+            1 => At::Dart,
+            2 => At::Crease(self.places),
+            _ => At::Corner,
+        }
+    }
+}
+
+impl Creases {
+    /// The edges at `v`, as sharp as `of` says of what they are.
+    fn survey<C: Connectivity>(&self, c: &C, v: u32, mut of: impl FnMut(f32) -> f32) -> Survey {
+        let mut found = Survey { count: 0, places: [0; 2], ends: [v; 2], semi: 0, sum: 0.0 };
+        let mut place = 0;
+        spokes(c, v, |h, other| {
+            let s = of(self.along(c, h));
+            if s > 0.0 {
+                if found.count < 2 {
+                    (found.places[found.count], found.ends[found.count]) = (place, other);
+                }
+                found.count += 1;
+                if s < INFINITE {
+                    (found.semi, found.sum) = (found.semi + 1, found.sum + s);
+                }
+            }
+            place += 1;
+        });
+        found
+    }
+}
+
+/// A vertex's rule in parts that make one together: the scheme's own rule, the crease through it, the vertex itself.
+struct Parts {
+    /// In that order.
+    share: [f64; 3],
+    /// The vertices at the crease's ends.
+    ends: [u32; 2],
+}
+
+/// The part that holds at a vertex of so many sharp edges.
+fn part(sharp: bool, edges: usize) -> usize {
+    match edges {
+        _ if sharp => 2,
+        0 | 1 => 0,
+        2 => 1,
+        _ => 2,
+    }
+}
+
+/// The rule of a marked vertex, both levels' taken together.
+#[inline(never)]
+fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
+    let mut parts = Parts { share: [0.0, 0.0, 1.0], ends: [v; 2] };
+    let Some(creases) = tags.creases else { return parts };
+    if tags.is_sharp(c, v) {
+        return parts;
+    }
+    let own = creases.vertex(v);
+    let now = creases.survey(c, v, |s| s);
+    let (before, mut after) = (part(own > 0.0, now.count), part(own > 0.0, now.count));
+    parts.ends = now.ends;
+    let (mut ending, mut count) = (0.0, 0);
+    if now.semi > 0 || own > 0.0 {
+        // What ends within this step.
+        if own > 0.0 && less(own) == 0.0 {
+            (ending, count) = (own, 1);
+        }
+        let next = creases.survey(c, v, |s| {
+            let left = match tags.rules.decay {
+                Decay::Chaikin if s > 0.0 && s < INFINITE => chaikin(s, now.sum, now.semi),
+                _ => less(s),
+            };
+            if s > 0.0 && left == 0.0 {
+                (ending, count) = (ending + s, count + 1);
+            }
+            left
+        });
+        after = part(less(own) > 0.0, next.count);
+        if after == 1 && before == 2 {
+            parts.ends = next.ends;
+        }
+    }
+    parts.share[2] = 0.0;
+    if after == before {
+        parts.share[before] = 1.0;
+    } else {
+        let sharp = f64::from((ending / count as f32).min(1.0));
+        parts.share[before] = sharp;
+        parts.share[after] = 1.0 - sharp;
+    }
+    parts
+}
+
+/// States the rule of a marked vertex; `smooth` states the scheme's own.
+#[inline(never)]
+pub(crate) fn vertex_point<C: Connectivity, R: Row>(
+    c: &C,
+    v: u32,
+    tags: &Tags<'_>,
+    row: &mut R,
+    smooth: impl Fn(&mut R),
+) {
+    let Parts { share: [rest, curve, own], ends } = parts(c, v, tags);
+    if rest > 0.0 {
+        smooth(row);
+        if rest == 1.0 {
+            return;
+        }
+        row.scale(rest);
+    }
+    if curve > 0.0 {
+        row.vertex(ends[0], 0.125 * curve);
+        row.vertex(ends[1], 0.125 * curve);
+    }
+    row.vertex(v, own + 0.75 * curve);
+}
+
+/// States the point of the sharp edge of `h`; `smooth` states the scheme's own.
+#[inline(never)]
+pub(crate) fn edge_point<C: Connectivity, R: Row>(
+    c: &C,
+    h: u32,
+    tags: &Tags<'_>,
+    row: &mut R,
+    smooth: impl Fn(&mut R),
+) {
+    let sharp = edge_share(c, h, tags);
+    if sharp != 1.0 {
+        smooth(row);
+        row.scale(1.0 - sharp);
+    }
+    row.vertex(c.origin(h), 0.5 * sharp);
+    row.vertex(c.origin(c.next(h)), 0.5 * sharp);
+}
+
+/// By how much the edge of `h`, not on a boundary, is a crease in this step.
+#[inline(never)]
+fn edge_share<C: Connectivity>(c: &C, h: u32, tags: &Tags<'_>) -> f64 {
+    let Some(creases) = tags.creases else { return 0.0 };
+    let s = creases.along(c, h);
+    let half = |end: u32| creases.half(c, c.origin(end), s, tags.rules.decay);
+    // Chaikin's rule can end an edge of more than 1; OpenSubdiv goes beyond the middle then, and so does this.
+    if half(h) > 0.0 && half(c.next(h)) > 0.0 { 1.0 } else { f64::from(s) }
+}
