@@ -29,6 +29,12 @@ pub fn torus_triangles(n: u32, m: u32) -> Soup {
     Soup::from_faces(ring(n, m), &faces)
 }
 
+/// Every fourth of a torus's rings as a crease, by turns of sharpness 2.5 and infinitely sharp.
+pub fn rings(n: u32, m: u32) -> Vec<([u32; 2], f32)> {
+    let sharp = cells(n, m).filter(|(_, j)| j % 4 == 0);
+    sharp.map(|(i, j)| ([j * n + i, j * n + (i + 1) % n], if j % 8 == 0 { 2.5 } else { 10.0 })).collect()
+}
+
 /// A ring of faces of three to six corners; `m` divisible by 4.
 pub fn mixed(n: u32, m: u32) -> Soup {
     let mut soup = Soup { positions: ring(n, m), ..Soup::default() };
