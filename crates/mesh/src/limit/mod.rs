@@ -34,7 +34,7 @@ mod sqrt3;
 use analysis::{Analysis, Setting};
 
 use crate::plan::Step;
-use crate::scheme::{Entry, Tags};
+use crate::scheme::{Entry, Tags, TriangleRule};
 use crate::split::{Level, Split};
 use crate::topology::Connectivity;
 
@@ -284,6 +284,14 @@ impl<'a> Projector<'a> {
             LimitRule::CatmullClark | LimitRule::Loop | LimitRule::Sqrt3 => {
                 self.ring.read(c, v);
                 let kind = self.ring.kind(tags.is_sharp(c, v));
+                // The closed forms know the first rule for triangles only.
+                let odd = |h: &u32| c.face_half_edges(c.face(*h)).len() != 4;
+                let smooth = self.rule == LimitRule::CatmullClark && tags.rules.triangle == TriangleRule::Smooth;
+                if smooth && self.ring.spokes.iter().any(odd) {
+                    let setting = Setting { scheme: self.scheme, split: self.split, tags };
+                    self.analysis.mask(c, setting, v, mask);
+                    return &self.mask;
+                }
                 match self.rule {
                     LimitRule::Loop => loop_::mask(&self.ring, kind, v, tags, mask),
                     LimitRule::CatmullClark => catmull_clark::mask(c, &self.ring, kind, v, mask),
