@@ -92,6 +92,17 @@ impl Creases {
         out.some()
     }
 
+    /// The sharpness of every half-edge and vertex of `t` as these say; none if nothing is sharp. Cost: linear.
+    pub(crate) fn marked_by(t: &Topology, edge: impl Fn(u32) -> f32, vertex: impl Fn(u32) -> f32) -> Option<Creases> {
+        let mut out = Creases::with_room(t);
+        for e in 0..t.edges() {
+            let h = t.edge_half_edge(e);
+            out.sharpen(t, h, edge(h));
+        }
+        out.stay((0..t.vertices()).map(vertex).collect());
+        out.some()
+    }
+
     fn with_room(c: &impl Connectivity) -> Creases {
         Creases { edges: vec![0.0; c.edges() as usize], flags: vec![0; c.vertices() as usize], ..Creases::default() }
     }

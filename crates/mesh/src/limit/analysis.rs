@@ -16,10 +16,13 @@
 //! Neighbourhoods that look alike share one analysis. How many rings of faces a scheme looks at is found out: with one more
 //! the answer must be the same. Cost: some 500 us for a new kind of neighbourhood, about 2 us for the next of that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
 //! vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
+//! Where a scheme is not smooth (the first butterfly at extraordinary valences, J-splines at rims of many faces) the plane is
+//! that of its greatest eigenvalues, which need not be the one that people see.
 
 use super::Mask;
 use super::eigen::{self, Rows, back};
 use super::patch::{Anchor, Patch, Seen};
+use crate::marks::INFINITE;
 use crate::scheme::{Entry, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split, on};
@@ -29,6 +32,8 @@ use std::f64::consts::PI;
 
 /// How many refinements a neighbourhood may take until it looks like its parent.
 const DEPTH: u32 = 8;
+/// The same where creases have to fade first, a level for each unit of sharpness.
+const FADING: u32 = DEPTH + INFINITE as u32;
 /// How many rings a neighbourhood may have.
 const WIDEST: u32 = 8;
 
@@ -106,7 +111,7 @@ impl Analysis {
     fn look(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32, rings: u32) {
         on!(level, c => {
             let sharp = |v: u32| setting.tags.is_sharp(*c, v);
-            self.level.read(*c, Anchor::Vertex(v), rings, (sharp, setting.tags.knots));
+            self.level.read(*c, Anchor::Vertex(v), rings, (sharp, setting.tags.knots, setting.tags.creases));
         });
     }
 
@@ -172,7 +177,7 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, seen: &mut Seen) -> 
     let mut patches: Vec<Patch> = Vec::new();
     let mut steps: Vec<Rows> = Vec::new();
     let mut stationary = false;
-    for _ in 0..DEPTH {
+    for _ in 0..if first.creases.is_some() { FADING } else { DEPTH } {
         let patch = patches.last().unwrap_or(first);
         let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, seen) else {
             return Found::Nothing;
@@ -265,7 +270,9 @@ fn refine(
     let keeps = setting.split.keeps_vertices();
     let sharp = |v: u32| keeps && patch.sharp.get(v as usize).is_some_and(|s| *s);
     let knots = setting.split.knots(&level, &patch.knots, &lone);
-    seen.read(&child, next, rings, (sharp, &knots));
+    let marks = patch.creases.as_ref();
+    let marks = marks.and_then(|m| m.below(&level, setting.split, &child, setting.tags.rules.decay));
+    seen.read(&child, next, rings, (sharp, &knots, marks.as_ref()));
     let cut = seen.patch(&child);
     let rows = cut.vertices.iter().map(|&v| rows[v as usize].clone()).collect();
     // In its own numbering the anchor comes first.
@@ -399,11 +406,17 @@ fn eigenvectors(patch: &Patch, anchor: Anchor, s: &Rows, rings: u32, interpolati
     for &v in &own {
         start[index[v as usize] as usize] = 1.0 / own.len() as f64;
     }
-    let kept = matches!(anchor, Anchor::Vertex(_)) && patch.sharp[own[0] as usize];
+    // A crease that lasts has a plane on either side; a corner between smooth edges none.
+    let mut lasting = 0;
+    if let (Anchor::Vertex(v), Some(creases)) = (anchor, &patch.creases) {
+        t.turn(v, |h| lasting += u32::from(!is_boundary(t.twin(h)) && creases.along(t, h) > 0.0));
+    }
+    let creased = lasting > u32::from(!rim);
+    let kept = creased || (matches!(anchor, Anchor::Vertex(_)) && patch.sharp[own[0] as usize]);
     let point = if interpolating { Some(start) } else { eigen::point(&small, start) };
     let Some(point) = point else { return Some((None, None)) };
     let faces = around.len() - usize::from(rim);
-    if kept && !(rim && faces == 1) {
+    if kept && (creased || !(rim && faces == 1)) {
         return Some((Some(spread(&point)), None));
     }
     let mut pattern = [vec![0.0; members.len()], vec![0.0; members.len()]];

@@ -7,12 +7,15 @@
 //!     tangents        e_i: A cos(2 pi i / n)    f_i: cos(2 pi i / n) + cos(2 pi (i + 1) / n)    and the same with sin
 //!                     A = 1 + cos(2 pi / n) + cos(pi / n) sqrt(2 (9 + cos(2 pi / n)))
 //!   curve             (1, 4, 1) / 6           tangents: (1, -1) along it, and across k faces, theta = pi / k:
-//!                     e_i: 4 sin(i theta)     f_i: sin(i theta) + sin((i + 1) theta)
-//!                     v: 4 R (cos(theta) - 1)   both ends: -R (1 + 2 cos theta)    R = (1 + cos theta) / sin theta
+//!                     e_i: A sin(i theta)     f_i: sin(i theta) + sin((i + 1) theta)
+//!                     v: x = -8 lambda Z / (4 lambda - 1)     both ends: -(x + (A + 2) Z) / 2
 //!   corner            itself
 //! ```
 //!
-//! The last is from H. Biermann, A. Levin, D. Zorin, "Piecewise smooth subdivision surfaces with normal control" (2000).
+//! Across, lambda is the greater root of 16 lambda^2 - (10 + 2 cos theta) lambda + 1 = 0, A = 16 lambda - 4 as inside, and Z =
+//! cot(theta / 2) the sum of the sines: the left eigenvector that starts with these sines, its other weights from the rows
+//! of the vertex and from their sum, which is zero. (At two faces -4; -1, 4, -1; 1, 1. The weights of H. Biermann, A. Levin,
+//! D. Zorin, "Piecewise smooth subdivision surfaces with normal control", 2000, belong to rules that depend on the valence.)
 //! Beside a single face the curve's second difference takes its place: the surface bends into the curve's own plane there.
 //!
 //! Where a face is no quad, these are the weights of the children v', e', f' (which quads surround), and the rules of one
@@ -54,14 +57,16 @@ pub(super) fn mask(c: &impl Connectivity, ring: &Ring, kind: Kind, v: u32, mask:
             for number in 0..ring.sectors() {
                 let (first, faces) = ring.sector(number);
                 let [c1, s] = ring.root(1, 2 * faces);
-                let r = (1.0 + c1) / s;
-                let own = if faces == 1 { -2.0 } else { 4.0 * r * (c1 - 1.0) };
-                let end = if faces == 1 { 1.0 } else { -r * (1.0 + 2.0 * c1) };
+                let lambda = (5.0 + c1 + ((c1 + 9.0) * (c1 + 1.0)).max(0.0).sqrt()) / 16.0;
+                let (z, a) = ((1.0 + c1) / s, 16.0 * lambda - 4.0);
+                let x = -8.0 * lambda * z / (4.0 * lambda - 1.0);
+                let own = if faces == 1 { -2.0 } else { x };
+                let end = if faces == 1 { 1.0 } else { -0.5 * (x + (a + 2.0) * z) };
                 let inner = |i: usize| if faces == 1 { 0.0 } else { ring.root(i, 2 * faces)[1] };
                 let edge = |i: usize| match i {
                     0 => [0.0, 1.0, end],
                     i if i == faces => [0.0, -1.0, end],
-                    i => [0.0, 0.0, 4.0 * inner(i)],
+                    i => [0.0, 0.0, a * inner(i)],
                 };
                 let face = |i: usize| [0.0, 0.0, inner(i) + inner(i + 1)];
                 let sector = Sector { first, faces, curve: true, number };

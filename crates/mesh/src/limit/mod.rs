@@ -33,6 +33,8 @@ mod sqrt3;
 
 use analysis::{Analysis, Setting};
 
+use crate::crease::Creases;
+use crate::marks::INFINITE;
 use crate::plan::Step;
 use crate::scheme::{Entry, Tags, TriangleRule};
 use crate::split::{Level, Split};
@@ -152,6 +154,8 @@ struct Ring {
     neighbours: Vec<u32>,
     /// The neighbours across creases and boundaries, by their places in `neighbours`.
     creases: Vec<u32>,
+    /// Whether rules here change from level to level, or are none of the closed forms: sharpness that fades, a dart.
+    fading: bool,
     /// cos and sin of 2 pi i / n, by n and i, as far as they were needed.
     roots: Vec<Vec<[f64; 2]>>,
 }
@@ -161,8 +165,8 @@ const MOST_ROOTS: usize = 64;
 
 impl Ring {
     /// Turns around `v`. Cost: the valence.
-    fn read(&mut self, c: &impl Connectivity, v: u32) {
-        let Ring { spokes, neighbours, creases, .. } = self;
+    fn read(&mut self, c: &impl Connectivity, v: u32, marks: Option<&Creases>) {
+        let Ring { spokes, neighbours, creases, fading, .. } = self;
         spokes.clear();
         neighbours.clear();
         creases.clear();
@@ -172,8 +176,22 @@ impl Ring {
         });
         if let Some(arriving) = self.arriving {
             neighbours.push(c.origin(arriving));
-            creases.extend([0, spokes.len() as u32]);
         }
+        *fading = false;
+        if let Some(marks) = marks {
+            let s = marks.vertex(v);
+            *fading = s > 0.0 && s < INFINITE;
+            for (i, &h) in spokes.iter().enumerate() {
+                let s = marks.along(c, h);
+                creases.extend((s >= INFINITE).then_some(i as u32));
+                *fading |= s > 0.0 && s < INFINITE;
+            }
+        } else if self.arriving.is_some() {
+            creases.push(0);
+        }
+        creases.extend(self.arriving.map(|_| spokes.len() as u32));
+        // The points of a crease that ends here are not those of the smooth rule.
+        *fading |= creases.len() == 1;
         let n = if self.arriving.is_some() { 2 * self.spokes.len() } else { self.spokes.len() };
         if n >= self.roots.len() && n <= MOST_ROOTS {
             self.roots.resize(n + 1, Vec::new());
@@ -282,12 +300,12 @@ impl<'a> Projector<'a> {
         mask.clear();
         match self.rule {
             LimitRule::CatmullClark | LimitRule::Loop | LimitRule::Sqrt3 => {
-                self.ring.read(c, v);
+                self.ring.read(c, v, tags.creases);
                 let kind = self.ring.kind(tags.is_sharp(c, v));
-                // The closed forms know the first rule for triangles only.
+                // The closed forms know marks that last, and one rule for triangles.
                 let odd = |h: &u32| c.face_half_edges(c.face(*h)).len() != 4;
                 let smooth = self.rule == LimitRule::CatmullClark && tags.rules.triangle == TriangleRule::Smooth;
-                if smooth && self.ring.spokes.iter().any(odd) {
+                if self.ring.fading || (smooth && self.ring.spokes.iter().any(odd)) {
                     let setting = Setting { scheme: self.scheme, split: self.split, tags };
                     self.analysis.mask(c, setting, v, mask);
                     return &self.mask;
@@ -302,7 +320,7 @@ impl<'a> Projector<'a> {
                 }
             }
             LimitRule::MidEdge => {
-                self.ring.read(c, v);
+                self.ring.read(c, v, None);
                 mid_edge::mask(c, &self.ring, self.split, v, mask);
             }
             LimitRule::Analysis => {

@@ -12,6 +12,7 @@
 //! level, once.
 
 use crate::connect::UNMATCHED;
+use crate::crease::Creases;
 use crate::scheme::Tags;
 use crate::topology::{Connectivity, Topology, is_boundary};
 
@@ -36,7 +37,10 @@ pub(super) struct Seen {
     sharp: Vec<bool>,
     /// Knot intervals, as of a mesh; empty if all are 1.
     knots: Vec<f32>,
-    /// Faces, sharp vertices and knots in one list: equal for neighbourhoods that look alike.
+    /// How sharp each corner's half-edge is, and each vertex; empty if nothing is.
+    edge_sharpness: Vec<f32>,
+    vertex_sharpness: Vec<f32>,
+    /// Faces, sharp vertices, knots and sharpness in one list: equal for neighbourhoods that look alike.
     pub key: Vec<u32>,
     /// The half-edge by which each vertex was first met, which leaves it.
     first: Vec<u32>,
@@ -58,7 +62,7 @@ impl Seen {
         c: &C,
         anchor: Anchor,
         rings: u32,
-        (sharp, knots): (impl Fn(u32) -> bool, &[f32]),
+        (sharp, knots, creases): (impl Fn(u32) -> bool, &[f32], Option<&Creases>),
     ) {
         self.vertex_at.resize(self.vertex_at.len().max(c.vertices() as usize), 0);
         self.face_at.resize(self.face_at.len().max(c.faces() as usize), 0);
@@ -105,6 +109,20 @@ impl Seen {
             let pairs = self.half_edges.iter().flat_map(|&g| [knots[2 * g as usize], knots[2 * g as usize + 1]]);
             self.knots.extend(pairs);
             self.key.extend(self.knots.iter().map(|d| d.to_bits()));
+        }
+        self.edge_sharpness.clear();
+        self.vertex_sharpness.clear();
+        if let Some(creases) = creases {
+            // A boundary is one without being marked.
+            let along = |&h: &u32| if is_boundary(c.twin(h)) { 0.0 } else { creases.along(c, h) };
+            self.edge_sharpness.extend(self.half_edges.iter().map(along));
+            self.vertex_sharpness.extend(self.vertices.iter().map(|&v| creases.vertex(v)));
+            for list in [&mut self.edge_sharpness, &mut self.vertex_sharpness] {
+                if list.iter().all(|s| *s == 0.0) {
+                    list.clear();
+                }
+                self.key.extend(list.iter().map(|s| s.to_bits()));
+            }
         }
     }
 
@@ -192,7 +210,12 @@ impl Seen {
         }
         let (topology, class) = Topology::assemble(self.offsets.clone(), &self.corners, self.vertices.len(), &mate);
         let back = |c: &u32| *c as usize;
+        let marked = !self.edge_sharpness.is_empty() || !self.vertex_sharpness.is_empty();
+        let edge = |h: u32| self.edge_sharpness.get(h as usize).copied().unwrap_or(0.0);
+        let vertex = |v: u32| self.vertex_sharpness.get(back(&class[v as usize])).copied().unwrap_or(0.0);
+        let creases = if marked { Creases::marked_by(&topology, edge, vertex) } else { None };
         Patch {
+            creases,
             topology,
             rings: class.iter().map(|c| self.rings[back(c)]).collect(),
             sharp: class.iter().map(|c| self.sharp[back(c)]).collect(),
@@ -218,6 +241,8 @@ pub(super) struct Patch {
     pub sharp: Vec<bool>,
     /// Knot intervals, as of a mesh; empty if all are 1.
     pub knots: Vec<f32>,
+    /// How sharp its edges and vertices are.
+    pub creases: Option<Creases>,
     /// As [`Seen::key`].
     pub key: Vec<u32>,
 }
@@ -225,6 +250,6 @@ pub(super) struct Patch {
 impl Patch {
     /// The rules' tags for this patch.
     pub fn tags<'a>(&'a self, tags: Tags<'a>, lone: &'a [u32]) -> Tags<'a> {
-        Tags { sharp: &self.sharp, creases: None, knots: &self.knots, lone, ..tags }
+        Tags { sharp: &self.sharp, knots: &self.knots, creases: self.creases.as_ref(), lone, ..tags }
     }
 }

@@ -26,6 +26,19 @@ pub fn fan(n: u32, closed: bool) -> Soup {
     Soup::from_faces(positions, &faces)
 }
 
+/// Half fans: 1 to 9 triangles around a vertex of the boundary.
+pub fn half_fans() -> impl Iterator<Item = (String, Soup)> {
+    (1..=9u32).map(|n| {
+        let mut positions = vec![[0.0, 0.0, 0.5]];
+        for i in 0..=n {
+            let angle = std::f64::consts::PI * f64::from(i) / f64::from(n.max(2));
+            positions.push([angle.cos() as f32, angle.sin() as f32, 0.1 * (i * 7 % 5) as f32]);
+        }
+        let faces: Vec<[u32; 3]> = (0..n).map(|i| [0, i + 1, i + 2]).collect();
+        (format!("half a fan of {n}"), Soup::from_faces(positions, &faces))
+    })
+}
+
 /// A prism over an n-gon: quads and two n-gons.
 pub fn prism(n: u32) -> Soup {
     let mut positions = Vec::new();
