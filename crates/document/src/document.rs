@@ -466,6 +466,11 @@ impl Document {
             let name = state.settings.scheme.info.name;
             remarks.push(Remark::new(&format!("texture coordinates are left out: {name} does not carry them"), false));
         }
+        if let Some(scheme) = plan.ignores_marks(&state.built.mesh) {
+            let name = scheme.info.name;
+            let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");
+            remarks.push(Remark::new(&text, false));
+        }
         remarks
     }
 

@@ -28,7 +28,7 @@ fn the_usage_lines_are_what_people_type() {
     assert_eq!(usage("weld"), "weld exact|EPS|off");
     assert_eq!(usage("scale"), "scale [S]");
     assert_eq!(usage("info"), "info [--json]");
-    assert_eq!(usage("boundary"), "boundary edge-only|edge-and-corner");
+    assert_eq!(usage("boundary"), "boundary none|edge-only|edge-and-corner");
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn values_out_of_range_are_no_values() {
 fn completion_knows_commands_arguments_and_keys() {
     assert_eq!(complete("le"), ["level"]);
     assert_eq!(complete("re"), ["redo", "reload"]);
-    assert_eq!(complete("boundary "), ["edge-only", "edge-and-corner"]);
+    assert_eq!(complete("boundary "), ["none", "edge-only", "edge-and-corner"]);
     assert_eq!(complete("open builtin:t"), ["builtin:t-shape", "builtin:torus", "builtin:tetrahedron"]);
     assert_eq!(complete("scheme ").len(), limn_mesh::SCHEMES.len());
     assert_eq!(complete("scheme mod"), ["modified-butterfly"]);

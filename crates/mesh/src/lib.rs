@@ -64,8 +64,8 @@ pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine}
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
 pub use scheme::{
-    Accepts, Boundary, Decay, Domain, Entry, FaceVarying, Family, Info, Param, Params, Rules, SCHEMES, TriangleRule,
-    scheme,
+    Accepts, Boundary, Decay, Domain, Entry, FaceVarying, Family, Honours, Info, Param, Params, Rules, SCHEMES,
+    TriangleRule, scheme,
 };
 pub use shapes::{SHAPES, Shape, shape};
 pub use soup::{Marks, NONE, Soup};

@@ -161,6 +161,15 @@ impl Plan {
         self.walk(mesh).any(|step| step.is_ok_and(|s| !s.split.keeps_corners()))
     }
 
+    /// The first scheme of the plan to which marks of `mesh` mean nothing; at level 0 the one that would come first.
+    pub fn ignores_marks(&self, mesh: &Mesh) -> Option<&'static Entry> {
+        let semi = mesh.vertex_sharpness.iter().any(|&s| s > 0.0 && s < INFINITE);
+        let creases = semi || !mesh.edge_sharpness.is_empty();
+        let corners = !mesh.vertex_sharpness.is_empty();
+        let ignores = |e: &&'static Entry| creases && !e.honours.creases || corners && !e.honours.corners;
+        (0..self.level.max(1)).map(|step| self.run(step).scheme).find(ignores)
+    }
+
     /// What rules have to know of the plan at a step, and of the sharp vertices.
     pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool], creases: Option<&'a Creases>) -> Tags<'a> {
         Tags { sharp, creases, step: at, ..Tags::new(self.rules, step.params) }

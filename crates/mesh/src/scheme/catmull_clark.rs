@@ -41,6 +41,7 @@ impl Scheme for CatmullClark {
     };
 
     const COMMON: bool = true;
+    const CREASES: bool = true;
     const LIMIT: LimitRule = LimitRule::CatmullClark;
 
     #[inline(always)]

@@ -37,6 +37,7 @@ impl Scheme for Linear {
     };
 
     const COMMON: bool = true;
+    const CREASES: bool = true;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     #[inline(always)]

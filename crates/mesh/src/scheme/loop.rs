@@ -66,6 +66,7 @@ impl Scheme for Loop {
     };
 
     const COMMON: bool = true;
+    const CREASES: bool = true;
     const LIMIT: LimitRule = LimitRule::Loop;
 
     #[inline(always)]

@@ -259,6 +259,9 @@ pub trait Scheme: 'static {
     /// without the feature `full`.
     const COMMON: bool = false;
 
+    /// Whether sharp and semi-sharp edges and vertices mean to it what [`crate::crease`] says, or nothing is smoothed anyway.
+    const CREASES: bool = false;
+
     /// How the limit of its vertices is found.
     const LIMIT: LimitRule = LimitRule::Analysis;
 
@@ -269,6 +272,15 @@ pub trait Scheme: 'static {
 type EvalFn = fn(&Level<'_>, Split, Tags<'_>, &mut Eval<'_>);
 type RecordFn = fn(&Level<'_>, Split, Tags<'_>, &mut Record<'_>);
 
+/// Which marks of a mesh mean something to a scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Honours {
+    /// Sharp and semi-sharp edges, and semi-sharp vertices.
+    pub creases: bool,
+    /// Infinitely sharp vertices: they stay where they are.
+    pub corners: bool,
+}
+
 /// A scheme in the registry: its facts, and its rules compiled for every sink.
 #[derive(Debug)]
 pub struct Entry {
@@ -278,6 +290,8 @@ pub struct Entry {
     pub limit: LimitRule,
     /// [`Scheme::COMMON`].
     pub common: bool,
+    /// Which marks mean something to it.
+    pub honours: Honours,
     eval: EvalFn,
     record: RecordFn,
 }
@@ -295,7 +309,9 @@ const fn entry<S: Scheme>() -> Entry {
     let eval: EvalFn =
         if S::COMMON || FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
     let record: RecordFn = if FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
-    Entry { info: S::INFO, common: S::COMMON, limit: S::LIMIT, eval, record }
+    let corners = !matches!(S::INFO.family, Family::Dual | Family::MidEdge);
+    let honours = Honours { creases: S::CREASES, corners };
+    Entry { info: S::INFO, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
 }
 
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {

@@ -34,6 +34,7 @@ impl Scheme for Poke {
         params: &[],
     };
 
+    const CREASES: bool = true;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

@@ -22,7 +22,7 @@
 //! makes the seam C2, is not part of it). Cost: about 100 ns an output face of a mixed mesh.
 
 use super::loop_::beta;
-use super::{Accepts, CatmullClark, Entry, Family, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point};
+use super::{Accepts, CatmullClark, Entry, Family, Honours, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -40,6 +40,7 @@ pub(super) const fn quad_triangle() -> Entry {
     Entry {
         info: QuadTriangle::INFO,
         common: QuadTriangle::COMMON,
+        honours: Honours { creases: true, corners: true },
         limit: QuadTriangle::LIMIT,
         eval: |level, split, tags, sink| match split {
             Split::Quad => (QUADS.eval)(level, split, tags, sink),
@@ -66,6 +67,8 @@ impl Scheme for QuadTriangle {
         interpolating: false,
         params: &[],
     };
+
+    const CREASES: bool = true;
 
     /// States the mixed split's rules.
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
