@@ -268,8 +268,8 @@ fn main() {
     table.row("linear", "sphere, triangles", &sphere, 2);
     table.row("linear", "creature", &quads, 5);
     table.row("loop", "sphere, triangles", &sphere, 2);
-    let triangulated = meshes::torus_triangles(128, 128);
-    table.creases("loop", "torus, triangles", &triangulated, meshes::rings(128, 128), 4);
+    let triangulated = meshes::torus_triangles(64, 64);
+    table.creases("loop", "torus, triangles", &triangulated, meshes::rings(64, 64), 4);
     table.row("loop", "creature, triangles", &triangles, 4);
     table.row("sqrt3", "sphere, triangles", &sphere, 3);
     table.row("sqrt3", "creature, triangles", &triangles, 5);
