@@ -31,6 +31,14 @@ pub(crate) struct Settings {
     pub level: u32,
 }
 
+impl Settings {
+    /// The faces that the scheme takes, with its parameters.
+    pub fn accepts(&self) -> Accepts {
+        let info = &self.scheme.info;
+        info.behind(&self.params.of(info)).accepts
+    }
+}
+
 /// One state of the document, sharing what it has in common with others.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
@@ -89,7 +97,7 @@ impl State {
 
     /// Chooses the mesh that the scheme takes and checks the level against the budget.
     pub fn settle(&mut self, budget: u64) -> Result<(), CommandError> {
-        self.built = match self.settings.scheme.info.accepts {
+        self.built = match self.settings.accepts() {
             Accepts::Triangles => self.base.triangles(&self.model)?,
             Accepts::Polygons | Accepts::Both => self.base.polygons.clone(),
         };

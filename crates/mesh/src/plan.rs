@@ -20,6 +20,7 @@ use crate::refine::RefineError;
 use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::Split;
 use crate::topology::Connectivity;
+use crate::weld::bounds;
 
 /// What to refine by, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +58,8 @@ pub(crate) struct Step {
     pub scheme: &'static Entry,
     pub params: [f64; MOST_PARAMS],
     pub split: Split,
+    /// The diagonal of the mesh, for schemes that ask for it.
+    pub size: f64,
     /// Whether the level that it begins with must have its half-edges stored in full.
     pub stored: bool,
 }
@@ -123,6 +126,8 @@ impl Plan {
     /// The steps on `mesh`, one after the other, up to the first that cannot be made.
     pub(crate) fn walk<'p>(&'p self, mesh: &'p Mesh) -> impl Iterator<Item = Result<Step, RefineError>> + 'p {
         let mut shape = mesh.face_shape();
+        let random = self.scheme.info.is_random() || self.later.iter().any(|run| run.scheme.info.is_random());
+        let size = if random { diagonal(mesh) } else { 0.0 };
         let (mut held, mut uncounted) = (Held::Full, false);
         (0..self.level).map(move |step| {
             let run = self.run(step);
@@ -144,7 +149,8 @@ impl Plan {
                     });
                 }
             };
-            let stored = split.stores() || (held == Held::Triangles && info.accepts == Accepts::Polygons);
+            let stored =
+                split.stores() || (held == Held::Triangles && info.behind(&params).accepts == Accepts::Polygons);
             shape = split.face_shape(shape);
             uncounted = matches!(split, Split::Dual { .. } | Split::MidEdge { .. });
             held = match split {
@@ -152,7 +158,7 @@ impl Plan {
                 Split::Triangle => Held::Triangles,
                 _ => Held::Full,
             };
-            Ok(Step { scheme: run.scheme, params, split, stored })
+            Ok(Step { scheme: run.scheme, params, split, size, stored })
         })
     }
 
@@ -172,7 +178,7 @@ impl Plan {
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.
     pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool], creases: Option<&'a Creases>) -> Tags<'a> {
-        Tags { sharp, creases, step: at, ..Tags::new(self.rules, step.params) }
+        Tags { sharp, creases, step: at, size: step.size, ..Tags::new(self.rules, step.params) }
     }
 
     /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
@@ -195,7 +201,8 @@ impl Plan {
 
     /// Whether the last level's points are moved.
     pub(crate) fn projects(&self) -> bool {
-        self.limit && self.run(self.level).scheme.limit != LimitRule::Itself
+        let run = self.run(self.level);
+        self.limit && run.scheme.behind(&run.params.of(&run.scheme.info)).limit != LimitRule::Itself
     }
 
     /// The step that would come after the last: its rules say where the last level's points go in the limit.
@@ -206,4 +213,11 @@ impl Plan {
         let one_more = self.to(self.level.saturating_add(1));
         one_more.walk(mesh).nth(self.level as usize).transpose()
     }
+}
+
+/// The diagonal of the bounding box of a mesh.
+fn diagonal(mesh: &Mesh) -> f64 {
+    let [low, high] = bounds(&mesh.positions);
+    let side = |k: usize| f64::from(high[k]) - f64::from(low[k]);
+    (side(0) * side(0) + side(1) * side(1) + side(2) * side(2)).sqrt()
 }

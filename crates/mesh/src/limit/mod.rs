@@ -285,6 +285,10 @@ pub struct Projector<'a> {
 impl<'a> Projector<'a> {
     /// For the vertices of `level`, which `scheme` would refine by `split` with `tags`.
     pub fn new(scheme: &'static Entry, (level, split, tags): (&'a Level<'a>, Split, Tags<'a>)) -> Projector<'a> {
+        // A wrapper's constants are left out, so what is left is the scheme behind it.
+        let behind = scheme.behind(&tags.params);
+        let params = if behind == scheme { tags.params } else { Default::default() };
+        let (scheme, tags) = (behind, Tags { params, ..tags });
         let (ring, mask) = (Ring::default(), Mask::default());
         Projector { rule: scheme.limit, scheme, level, split, tags, ring, analysis: Analysis::new(split), mask }
     }

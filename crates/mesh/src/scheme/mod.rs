@@ -13,6 +13,7 @@
 mod butterfly;
 mod catmull_clark;
 mod doo_sabin;
+mod fractal;
 mod interpolating_sqrt3;
 mod j_spline;
 mod kobbelt;
@@ -69,6 +70,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<MidEdge>(),
     entry::<Linear>(),
     entry::<Poke>(),
+    fractal::fractal(),
 ];
 
 /// The scheme with this id.
@@ -117,6 +119,8 @@ pub enum Family {
     Primal,
     /// Splits triangles in four and other faces in quads.
     Mixed,
+    /// What the scheme does that it wraps.
+    Fractal,
     /// Splits vertices: a face for every face, edge and vertex.
     Dual,
     /// Splits triangles in three and turns their edges.
@@ -129,7 +133,10 @@ pub enum Family {
 
 impl Info {
     /// The split that this scheme uses on a mesh with such faces; none if it cannot take them.
-    pub fn split(&self, shape: FaceShape, boundary: Boundary, _params: &[f64; MOST_PARAMS]) -> Option<Split> {
+    pub fn split(&self, shape: FaceShape, boundary: Boundary, params: &[f64; MOST_PARAMS]) -> Option<Split> {
+        if self.family == Family::Fractal {
+            return self.behind(params).split(shape, boundary, &[0.0; MOST_PARAMS]);
+        }
         match (self.accepts, shape == FaceShape::Triangles) {
             (Accepts::Triangles, false) => None,
             _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary != Boundary::EdgeAndCorner }),
@@ -141,6 +148,20 @@ impl Info {
             _ if self.family == Family::Poke => Some(Split::Poke),
             (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
+        }
+    }
+
+    /// Whether rules move points at random: such a scheme promises neither affine invariance, nor the same surface under
+    /// other numbers, nor symmetry.
+    pub fn is_random(&self) -> bool {
+        self.family == Family::Fractal
+    }
+
+    /// The scheme that does the work: the one that it wraps, for a wrapper with these parameters; else itself.
+    pub fn behind(&self, params: &[f64; MOST_PARAMS]) -> &Info {
+        match self.family {
+            Family::Fractal => &wrapped(params).info,
+            _ => self,
         }
     }
 }
@@ -224,6 +245,8 @@ pub struct Tags<'a> {
     pub lone: &'a [u32],
     /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
     pub knots: &'a [f32],
+    /// The diagonal of the bounding box of level 0, where the scheme asks for it.
+    pub size: f64,
     /// The scheme's parameters: [`Params::of`].
     pub params: [f64; MOST_PARAMS],
 }
@@ -231,7 +254,7 @@ pub struct Tags<'a> {
 impl Tags<'_> {
     /// Tags of a mesh without marks, at level 0.
     pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        Tags { rules, step: 0, sharp: &[], creases: None, lone: &[], knots: &[], params }
+        Tags { rules, step: 0, sharp: &[], creases: None, lone: &[], knots: &[], size: 0.0, params }
     }
 
     /// Whether `v`, which starts its turn at `start`, is kept.
@@ -345,7 +368,17 @@ fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut
     }
 }
 
+/// What a wrapper with these parameters wraps.
+fn wrapped(params: &[f64; MOST_PARAMS]) -> &'static Entry {
+    fractal::OVER.get(params[0] as usize).unwrap_or(&fractal::OVER[0])
+}
+
 impl Entry {
+    /// [`Info::behind`].
+    pub(crate) fn behind(&'static self, params: &[f64; MOST_PARAMS]) -> &'static Entry {
+        if self.info.family == Family::Fractal { wrapped(params) } else { self }
+    }
+
     /// Computes up to `quota` children's points from `cursor` on; true when all are done.
     pub fn eval(
         &self,
