@@ -460,12 +460,7 @@ impl Document {
             // Building the triangles meets the same trouble again: only what is new is said.
             remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
         }
-        // Said at level 0 too, where nothing is lost yet.
         let plan = state.plan();
-        if state.built.mesh.uv.is_some() && plan.to(plan.level.max(1)).drops_uv(&state.built.mesh) {
-            let name = state.settings.scheme.info.name;
-            remarks.push(Remark::new(&format!("texture coordinates are left out: {name} does not carry them"), false));
-        }
         if let Some(scheme) = plan.ignores_marks(&state.built.mesh) {
             let name = scheme.info.name;
             let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");

@@ -494,17 +494,3 @@ proptest! {
         }
     }
 }
-
-#[test]
-fn what_a_scheme_leaves_out_is_said() {
-    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
-    let mut d = Document::new(1 << 30);
-    load(&mut d, obj);
-    let said =
-        |d: &Document| d.remarks().iter().any(|r| r.text.starts_with("Texture coordinates are left out: Doo–Sabin "));
-    assert!(!said(&d));
-    d.run("scheme doo-sabin").unwrap();
-    assert!(said(&d));
-    d.run("scheme catmull-clark").unwrap();
-    assert!(!said(&d));
-}

@@ -25,6 +25,7 @@
 //! No I/O, clock, GPU or browser in here. Native and wasm give the same bits: sums run in a fixed order, no fused
 //! multiply-add, transcendental functions from `libm`, no hash map is iterated.
 
+mod charts;
 mod connect;
 pub mod crease;
 mod face_varying;

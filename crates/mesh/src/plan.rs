@@ -162,11 +162,6 @@ impl Plan {
         })
     }
 
-    /// Whether some step leaves texture coordinates out.
-    pub fn drops_uv(&self, mesh: &Mesh) -> bool {
-        self.walk(mesh).any(|step| step.is_ok_and(|s| !s.split.keeps_corners()))
-    }
-
     /// The first scheme of the plan to which marks of `mesh` mean nothing; at level 0 the one that would come first.
     pub fn ignores_marks(&self, mesh: &Mesh) -> Option<&'static Entry> {
         let semi = mesh.vertex_sharpness.iter().any(|&s| s > 0.0 && s < INFINITE);

@@ -12,6 +12,7 @@
 //! Limit: 2^31 - 1 corners in the last level, whatever the budget.
 
 use crate::FULL;
+use crate::charts;
 use crate::crease::Creases;
 use crate::fairing;
 use crate::holes;
@@ -19,6 +20,7 @@ use crate::limit::{Limit, Projection, Projector, limit};
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues, complete};
+pub use crate::report::{grouped, memory};
 use crate::scheme::{Boundary, Entry, Tags};
 use crate::sink::{Cursor, Record, Source};
 use crate::split::{Level, Split};
@@ -99,30 +101,6 @@ fn too_large(p: Option<&Prediction>, budget: u64) -> String {
     )
 }
 
-/// An amount of memory, as people read it: "52 kB", "1.4 MB", "18 MB", "1.5 GB".
-pub fn memory(bytes: u64) -> String {
-    let tenths = |unit: u64| bytes.saturating_add(unit / 20) / (unit / 10);
-    match bytes {
-        1_000_000_000.. => format!("{}.{} GB", tenths(1_000_000_000) / 10, tenths(1_000_000_000) % 10),
-        10_000_000.. => format!("{} MB", bytes.saturating_add(500_000) / 1_000_000),
-        100_000.. => format!("{}.{} MB", tenths(1_000_000) / 10, tenths(1_000_000) % 10),
-        _ => format!("{} kB", bytes.div_ceil(1_000)),
-    }
-}
-
-/// A count with commas, as people read it.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::with_capacity(digits.len() * 4 / 3);
-    for (i, d) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(d);
-    }
-    out
-}
-
 /// One more than the corners that fit 32-bit half-edges.
 const LARGEST: u64 = 1 << 31;
 
@@ -132,17 +110,17 @@ const LARGEST: u64 = 1 << 31;
 /// [`RefineError::NeedsTriangles`] and [`RefineError::NeedsTrianglesAt`].
 pub fn predict(mesh: &Mesh, plan: &Plan) -> Result<Option<Prediction>, RefineError> {
     let mut counts = [(mesh.counts(), mesh.counts()), (Counts::default(), Counts::default())];
-    let uv = mesh.uv.as_ref().filter(|_| !plan.drops_uv(mesh));
-    if let Some(uv) = uv {
+    if let Some(uv) = &mesh.uv {
         counts[1] = (uv.counts, uv.counts);
     }
-    let (mut last, mut tracked) = (None, false);
+    let (mut last, mut tracked, mut charted) = (None, false, false);
     for step in plan.walk(mesh) {
         let step = step?;
-        for (now, before) in &mut counts {
-            let Some(next) = step.split.counts(*now) else { return Ok(None) };
-            (*now, *before) = (next, *now);
-        }
+        let [own, uv] = counts;
+        let Some(next) = step.split.counts(own.0) else { return Ok(None) };
+        let Some(next_uv) = charts::counts(&step, uv.0, next) else { return Ok(None) };
+        counts = [(next, own.0), (next_uv, uv.0)];
+        charted |= !step.split.keeps_corners();
         tracked |= last.is_some_and(|l: Step| !same_way(&l, &step));
         last = Some(step);
     }
@@ -177,8 +155,12 @@ pub fn predict(mesh: &Mesh, plan: &Plan) -> Result<Option<Prediction>, RefineErr
         } else {
             0
         };
-    if uv.is_some() {
+    if mesh.uv.is_some() {
         bytes += track(counts[1], 16);
+        if charted {
+            // Where corners are, and the mesh's own half-edges once more.
+            bytes += 40 * (u128::from(counts[0].0.corners) + u128::from(counts[0].1.corners));
+        }
     }
     Ok(Some(Prediction { counts: counts[0].0, bytes: bytes.min(u128::from(u64::MAX)) as u64 }))
 }
@@ -224,17 +206,21 @@ impl Job {
         let steps = admit(&mesh, &plan, budget)?;
         let limit = if FULL && plan.projects() { plan.beyond(&mesh)? } else { None };
         let mut total = 0;
-        let uv = mesh.uv.as_ref().filter(|_| steps.iter().all(|s| s.split.keeps_corners()));
-        let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (uv.map(|u| u.counts), true)];
+        let tracks = [(Some(mesh.counts()), !mesh.colors.is_empty()), (mesh.uv.as_ref().map(|u| u.counts), true)];
         for (i, (counts, wide)) in tracks.into_iter().enumerate() {
             let Some(mut c) = counts else { continue };
+            let mut own = mesh.counts();
             let faired = |level: u32, c: &Counts| {
                 let passes = if i == 0 { plan.fairing(level).map_or(0, |f| f.passes()) } else { 0 };
                 u64::from(passes) * c.vertices
             };
             for (level, step) in (1..).zip(&steps) {
                 total += faired(level - 1, &c);
-                let Some(next) = step.split.counts(c) else { break };
+                let Some(next_own) = step.split.counts(own) else { break };
+                let Some(next) = (if i == 0 { Some(next_own) } else { charts::counts(step, c, next_own) }) else {
+                    break;
+                };
+                own = next_own;
                 let values = u64::from(i == 0) + u64::from(wide);
                 total += values * next.vertices;
                 if !step.split.stores() {
@@ -264,12 +250,17 @@ impl Job {
         self.geometry.step(&self.mesh, &self.plan, &self.steps, &mut quota);
         self.uv.step(&self.mesh, &self.plan, &self.steps, &mut quota);
         self.rows += (rows - quota) as u64;
+        self.is_done()
+    }
+
+    fn is_done(&self) -> bool {
         self.geometry.stage == Stage::Done && self.uv.stage == Stage::Done
     }
 
     /// How much is done, 0 to 1.
     pub fn progress(&self) -> f32 {
-        (self.rows as f64 / self.total as f64).min(1.0) as f32
+        // Texture coordinates may take less than was allowed for.
+        if self.is_done() { 1.0 } else { (self.rows as f64 / self.total as f64).min(1.0) as f32 }
     }
 
     /// The plan.
@@ -336,7 +327,7 @@ impl Job {
                     Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
                 }
             },
-            uv: (self.mesh.uv.is_some() && self.steps.iter().all(|s| s.split.keeps_corners())).then(|| UvValues {
+            uv: self.mesh.uv.is_some().then(|| UvValues {
                 values: self.uv.wide.iter().map(|v| [v[0], v[1]]).collect(),
                 corners: self.uv.corners,
             }),

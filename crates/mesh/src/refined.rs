@@ -83,7 +83,7 @@ pub struct Refined {
     pub points: Vec<[f32; 3]>,
     /// The faces.
     pub faces: Faces,
-    /// Texture coordinates, if the mesh has any and the split carries them.
+    /// Texture coordinates, if the mesh has any.
     pub uv: Option<UvValues>,
     /// Linear RGBA, one a vertex; empty if the mesh has none.
     pub colors: Vec<[f32; 4]>,

@@ -119,3 +119,27 @@ impl fmt::Display for Note {
         }
     }
 }
+
+/// An amount of memory, as people read it: "52 kB", "1.4 MB", "18 MB", "1.5 GB".
+pub fn memory(bytes: u64) -> String {
+    let tenths = |unit: u64| bytes.saturating_add(unit / 20) / (unit / 10);
+    match bytes {
+        1_000_000_000.. => format!("{}.{} GB", tenths(1_000_000_000) / 10, tenths(1_000_000_000) % 10),
+        10_000_000.. => format!("{} MB", bytes.saturating_add(500_000) / 1_000_000),
+        100_000.. => format!("{}.{} MB", tenths(1_000_000) / 10, tenths(1_000_000) % 10),
+        _ => format!("{} kB", bytes.div_ceil(1_000)),
+    }
+}
+
+/// A count with commas, as people read it.
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::with_capacity(digits.len() * 4 / 3);
+    for (i, d) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(d);
+    }
+    out
+}

@@ -35,6 +35,14 @@ pub fn boundary_rank(twin: u32) -> u32 {
     !twin
 }
 
+/// Whether `h` lies on the rim: a boundary that counts. Where charts of texture coordinates are refined, their seams are
+/// boundaries whose ranks lie behind.
+#[inline(always)]
+pub(crate) fn is_rim<C: Connectivity>(c: &C, h: u32) -> bool {
+    let twin = c.twin(h);
+    is_boundary(twin) && boundary_rank(twin) < c.boundary_half_edges()
+}
+
 /// Read access to the half-edges of one level. All ids are dense and 0-based; every answer takes constant time.
 pub trait Connectivity {
     /// Number of vertices.

@@ -11,6 +11,7 @@
 //! [`Plan::is_here`] leaves to builds with everything stands behind `FULL` here.
 
 use crate::FULL;
+use crate::charts::{self, Channel};
 use crate::crease::Creases;
 use crate::face_varying;
 use crate::fairing;
@@ -118,6 +119,9 @@ pub(crate) struct Track {
     pins: Vec<bool>,
     /// How sharp `level` is.
     creases: Option<Creases>,
+    /// Of texture coordinates that have to know how faces meet on seams: the mesh's own half-edges of `level`; none at level 0.
+    beside: Option<Owned>,
+    charted: bool,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
     /// Knot intervals of `level`, but at level 0, where the mesh has them.
@@ -146,12 +150,7 @@ impl Track {
             (None, true) => Vec::new(),
             (_, false) => mesh.colors.clone(),
         };
-        let dropped = steps.iter().any(|s| !s.split.keeps_corners());
-        let idle = if uv {
-            !FULL || plan.level == 0 || mesh.uv.is_none() || dropped
-        } else {
-            plan.level == 0 && !plan.closes()
-        };
+        let idle = if uv { !FULL || plan.level == 0 || mesh.uv.is_none() } else { plan.level == 0 && !plan.closes() };
         let mut track = Track {
             uv,
             level: 0,
@@ -174,6 +173,8 @@ impl Track {
             corner: Vec::new(),
             pins: Vec::new(),
             creases: None,
+            beside: None,
+            charted: FULL && uv && steps.iter().any(|s| !s.split.keeps_corners()),
             lone: Vec::new(),
             limit: limit.map(Projection::new),
             knots: Vec::new(),
@@ -254,8 +255,53 @@ impl Track {
             }
         }
         if self.stage == Stage::Done {
-            self.half_edges = None;
+            (self.half_edges, self.beside) = (None, None);
         }
+    }
+
+    /// Takes texture coordinates through a step whose faces leave their parents: a whole level.
+    fn chart(
+        &mut self,
+        level: &Level<'_>,
+        mesh: &Mesh,
+        plan: &Plan,
+        (step, following): (&Step, Option<&Step>),
+        quota: &mut usize,
+    ) -> Option<Owned> {
+        let held = self.beside.take();
+        let own = held.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
+        let (Level::Base(own), Level::Base(seams)) = (own, level) else {
+            unreachable!("a step says when it needs stored half-edges")
+        };
+        let (values, pins) = (std::mem::take(&mut self.wide), std::mem::take(&mut self.pins));
+        let old = Channel { topology: (*seams).clone(), values, pins };
+        let knots = if self.level == 0 { &mesh.knots } else { &self.knots };
+        let (new, rows) = charts::carry(own, &old, knots, (step, self.level), plan.rules);
+        *quota = quota.saturating_sub(rows);
+        self.level += 1;
+        self.before = self.counts;
+        self.counts = new.topology.counts();
+        (self.wide, self.pins) = (new.values, new.pins);
+        if following.is_none() {
+            self.corners = new.topology.origins().to_vec();
+            return None;
+        }
+        self.knots = step.split.knots(&Level::Base(own), knots, &step.split.lone(own));
+        self.beside = Some(Owned::below(&Level::Base(own), step.split));
+        Some(Owned::Stored(new.topology))
+    }
+
+    /// Takes the mesh's own half-edges one level further, where texture coordinates will have to know them.
+    fn follow(&mut self, mesh: &Mesh, split: Split, following: Option<&Step>) {
+        if !FULL || !self.charted || following.is_none() {
+            return;
+        }
+        let held = self.beside.take();
+        let level = held.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
+        let mut below = Owned::below(&level, split);
+        let mut at = 0;
+        while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
+        self.beside = Some(below.stored_for(following));
     }
 
     /// Works on a level; gives the half-edges of the next when it has come to that.
@@ -298,6 +344,9 @@ impl Track {
         }
         let at = steps.get(self.level as usize)?;
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
+        if FULL && self.uv && !split.keeps_corners() {
+            return Some(self.chart(level, mesh, plan, (at, following), quota));
+        }
         let tags = plan.tags(at, self.level, sharp, self.creases.as_ref());
         let tags = if self.uv {
             // Corners are among the pins, and no others.
@@ -371,6 +420,7 @@ impl Track {
                 let stored = cut.connect(t, split, children as u32);
                 self.source = self.behind(t, split, &cut);
                 self.knots = split.knots(level, tags.knots, &self.lone);
+                self.follow(mesh, split, following);
                 self.advance(split);
                 return Some(Some(Owned::Stored(stored)));
             }
@@ -379,6 +429,7 @@ impl Track {
                 if next.fill(level, at, quota) {
                     let next = self.next.take().map(|n| n.stored_for(following));
                     self.knots.clear();
+                    self.follow(mesh, split, following);
                     self.list(level, split);
                     self.advance(split);
                     return Some(next);

@@ -24,7 +24,7 @@
 use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary};
+use crate::topology::{Connectivity, is_boundary, is_rim};
 use std::f64::consts::PI;
 
 /// See the module.
@@ -49,9 +49,11 @@ impl Scheme for InterpolatingSqrt3 {
         let (old, faces) = (c.vertices(), c.faces());
         sink.pass(old, faces, |f, row| {
             let corners = c.face_half_edges(f);
-            let on_rim = |h: &u32| is_boundary(c.twin(*h));
-            match corners.clone().find(on_rim) {
-                Some(h) if trisect => third(c, h, false, tags, row),
+            let on_boundary = |h: &u32| is_boundary(c.twin(*h));
+            if let Some(h) = corners.clone().find(|&h| trisect && is_rim(c, h)) {
+                return third(c, h, false, tags, row);
+            }
+            match corners.clone().find(on_boundary) {
                 Some(h) => beside_rim(c, h, row),
                 None => inside(c, corners, row),
             }

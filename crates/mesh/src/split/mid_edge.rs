@@ -28,7 +28,7 @@ pub(super) fn tips(c: &impl Connectivity) -> Vec<u32> {
 }
 
 /// Whether `v` has a v-face, of so many spokes and arriving there; on a boundary that is kept every vertex has one.
-fn has_face(spokes: u32, boundary: bool, cut: bool) -> bool {
+pub(crate) fn has_face(spokes: u32, boundary: bool, cut: bool) -> bool {
     match boundary {
         true => !cut || spokes >= 2,
         false => spokes >= 3,

@@ -19,7 +19,7 @@
 //! Ids of vertices are stable prefixes: vertex 17 of level 0 is vertex 17 of every level. Cost: about 3 ns a half-edge.
 
 mod counts;
-mod mid_edge;
+pub(crate) mod mid_edge;
 pub(crate) mod mixed;
 mod poke;
 mod quad;
@@ -102,7 +102,8 @@ impl Split {
         !matches!(self, Split::Dual { .. } | Split::MidEdge { .. })
     }
 
-    /// Whether child faces lie in their parents, so that texture coordinates can follow them.
+    /// Whether child faces lie in their parents: then texture coordinates take the same split, with seams cut; else they need
+    /// charts.
     pub fn keeps_corners(self) -> bool {
         !matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. } | Split::MidEdge { .. })
     }
