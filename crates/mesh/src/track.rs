@@ -282,6 +282,8 @@ impl Track {
         self.before = self.counts;
         self.counts = new.topology.counts();
         (self.wide, self.pins) = (new.values, new.pins);
+        // Numbers are new; what is sharp for ever is among the pins.
+        self.creases = None;
         if following.is_none() {
             self.corners = new.topology.origins().to_vec();
             return None;
