@@ -33,7 +33,7 @@ export class Parameters {
     const made = [state.scheme, ...state.params.map(({ key }) => key)].join(" ");
     if (made !== this.#made) {
       this.#made = made;
-      const rows = state.params.map((param) => (param.kind === "number" ? this.#number(param) : this.#choice(param)));
+      const rows = state.params.map((param) => (param.kind === "choice" ? this.#choice(param) : this.#number(param)));
       const name = this.#schemes.find(({ id }) => id === state.scheme)?.name ?? "";
       this.#rows = rows.map(({ show }) => show);
       this.root.hidden = !rows.length;
@@ -61,7 +61,7 @@ export class Parameters {
 
   /** @param {Parameter} param */
   #number(param) {
-    const { key, low, high, default: initial } = param;
+    const { key, kind, low, high, default: initial } = param;
     let now = param;
     // In somebody's hand, or under a key that is held down: the slider is then ahead of the state.
     let held = false;
@@ -69,7 +69,7 @@ export class Parameters {
     const id = `parameter-${key}`;
     const input = el("input", { id, type: "range", "aria-describedby": `about-${key}` });
     // In this order: a value is fitted to the bounds that it meets.
-    Object.assign(input, { min: String(low), max: String(high), step: String(step(low, high, initial)) });
+    Object.assign(input, { min: String(low), max: String(high), step: String(kind === "whole" ? 1 : step(low, high, initial)) });
     const value = el("output", { for: id });
     const reset = el("button", { type: "button", title: `Back to ${initial}`, onclick: () => back() }, "Default");
     const ask = (/** @type {boolean} */ drag) => {

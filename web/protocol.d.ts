@@ -141,7 +141,7 @@ export interface Parameter {
   key: string;
   name: string;
   summary: string;
-  kind: "number" | "choice";
+  kind: "number" | "whole" | "choice";
   /** Of numbers. */
   low: number;
   high: number;

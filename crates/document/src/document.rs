@@ -305,7 +305,7 @@ impl Document {
             Command::Weld(weld) => settings.weld = Some(*weld).filter(|w| *w != before.model.weld),
             Command::Quads(on) => {
                 settings.quads = *on;
-                if *on && settings.accepts() == Accepts::Triangles {
+                if *on && matches!(settings.accepts(), Accepts::Triangles | Accepts::TrianglesThenQuads) {
                     settings.scheme = find_scheme("catmull-clark")?;
                     settings.params = Params::default();
                     settings.later.clear();

@@ -19,7 +19,7 @@ pub(crate) fn read(info: &'static Info, words: &[(String, String)]) -> Result<Pa
             return Err(CommandError::UnknownParameter { scheme: info.id, key: key.clone(), known: keys(info) });
         };
         let value = match &param.domain {
-            Domain::Number { .. } => number(text),
+            Domain::Number { .. } | Domain::Whole { .. } => number(text),
             Domain::Choice(words) => words.iter().position(|w| w == text).map(|i| i as f64),
         };
         if !value.is_some_and(|v| params.set(info, at, v)) {
@@ -96,7 +96,7 @@ pub fn prefix(plan: &Plan, at: usize) -> String {
 /// A value as a word.
 pub fn text(param: &Param, value: f64) -> String {
     match &param.domain {
-        Domain::Number { .. } => value.to_string(),
+        Domain::Number { .. } | Domain::Whole { .. } => value.to_string(),
         Domain::Choice(words) => words.get(value as usize).copied().unwrap_or_default().to_owned(),
     }
 }
@@ -105,6 +105,7 @@ pub fn text(param: &Param, value: f64) -> String {
 pub fn expected(param: &Param) -> String {
     match &param.domain {
         Domain::Number { low, high, .. } => format!("a number from {low} to {high}"),
+        Domain::Whole { low, high, .. } => format!("a whole number from {low} to {high}"),
         Domain::Choice(words) => words.join(" or "),
     }
 }
@@ -129,6 +130,9 @@ mod tests {
             ("scheme j-spline move=off s=1.25", "scheme j-spline s=1.25 move=off"),
             ("scheme j-spline s=0.5 move=off move=on", "scheme j-spline"),
             ("scheme butterfly w=0.01 w=0.0625", "scheme butterfly"),
+            ("scheme n-way n=5", "scheme n-way n=5"),
+            ("scheme n-way n=3", "scheme n-way"),
+            ("scheme tri-to-quad average=off", "scheme tri-to-quad average=off"),
         ] {
             document.run(line).unwrap();
             assert!(document.text().lines().any(|l| l == kept), "{line}: {}", document.text());
@@ -141,6 +145,10 @@ mod tests {
         assert_eq!(
             refuse(&mut document, "scheme butterfly w=2"),
             "`w=2` is not possible; w is a number from 0 to 0.125"
+        );
+        assert_eq!(
+            refuse(&mut document, "scheme n-way n=2.5"),
+            "`n=2.5` is not possible; n is a whole number from 2 to 16"
         );
         assert_eq!(
             refuse(&mut document, "scheme loop weights=mine"),

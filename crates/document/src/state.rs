@@ -98,7 +98,7 @@ impl State {
     /// Chooses the mesh that the scheme takes and checks the level against the budget.
     pub fn settle(&mut self, budget: u64) -> Result<(), CommandError> {
         self.built = match self.settings.accepts() {
-            Accepts::Triangles => self.base.triangles(&self.model)?,
+            Accepts::Triangles | Accepts::TrianglesThenQuads => self.base.triangles(&self.model)?,
             Accepts::Polygons | Accepts::Both => self.base.polygons.clone(),
         };
         check(&self.built.mesh, &self.plan(), budget)?;

@@ -298,6 +298,7 @@ pub fn parameters(document: &Document) -> Vec<Parameter> {
         let command = parameters::prefix(&plan, at);
         let (kind, low, high, words) = match &param.domain {
             Domain::Number { low, high, .. } => ("number", *low, *high, &[][..]),
+            Domain::Whole { low, high, .. } => ("whole", f64::from(*low), f64::from(*high), &[][..]),
             Domain::Choice(words) => ("choice", 0.0, 0.0, *words),
         };
         let choice = |word: &&'static str| {
@@ -395,7 +396,7 @@ mod tests {
                     (param.key, param.domain.default(), param.domain.default())
                 );
                 let lines = match row.kind {
-                    "number" => {
+                    "number" | "whole" => {
                         assert!(row.choices.is_empty() && row.low < row.high);
                         [row.low, row.high].map(|v| (v.to_string(), format!("{}{v}", row.command))).to_vec()
                     }

@@ -18,7 +18,7 @@ use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
-use crate::split::Split;
+use crate::split::{Split, Triangles};
 use crate::topology::Connectivity;
 use crate::weld::bounds;
 
@@ -134,7 +134,7 @@ impl Plan {
             let info = &run.scheme.info;
             let params = run.params.of(info);
             let split = match info.split(shape, self.rules.boundary, &params) {
-                Some(Split::Mixed) if uncounted => {
+                Some(Split::Mixed | Split::NWay { triangles: Triangles::Some, .. }) if uncounted => {
                     return Err(RefineError::Uncounted { scheme: info.name, level: step });
                 }
                 Some(split) => split.at(step - run.from),

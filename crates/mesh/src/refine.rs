@@ -23,7 +23,7 @@ use crate::refined::{Faces, Refined, UvValues, complete};
 pub use crate::report::{grouped, memory};
 use crate::scheme::{Boundary, Entry, Tags};
 use crate::sink::{Cursor, Record, Source};
-use crate::split::{Level, Split};
+use crate::split::{Level, Split, Triangles};
 use crate::topology::{Connectivity, Counts};
 use crate::track::{Owned, Stage, Track, weigh};
 use std::sync::Arc;
@@ -323,7 +323,9 @@ impl Job {
             faces: match split {
                 Split::Quad => Faces::Quads(self.geometry.corners),
                 Split::Triangle | Split::Sqrt3 { .. } | Split::Poke => Faces::Triangles(self.geometry.corners),
-                Split::Mixed | Split::Dual { .. } | Split::MidEdge { .. } => {
+                Split::NWay { triangles: Triangles::All, .. } => Faces::Triangles(self.geometry.corners),
+                Split::NWay { triangles: Triangles::None, .. } => Faces::Quads(self.geometry.corners),
+                Split::Mixed | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => {
                     Faces::Polygons { offsets: self.geometry.offsets, corners: self.geometry.corners }
                 }
             },

@@ -20,7 +20,7 @@ use crate::pack::{Damaged, Read, Reader, Writer};
 use crate::plan::{Plan, Run};
 use crate::refined::{Faces, Refined, UvValues};
 use crate::scheme::{Boundary, Decay, FaceVarying, MOST_PARAMS, Params, Rules, TriangleRule, scheme};
-use crate::split::{FaceKind, FaceShape, Split};
+use crate::split::{FaceKind, FaceShape, Split, Triangles};
 use crate::topology::{Counts, Topology};
 use std::sync::Arc;
 
@@ -289,6 +289,7 @@ fn put_split(out: &mut Writer, split: Split) {
         Split::Mixed => (4, 0),
         Split::MidEdge { cut, corners } => (5, u32::from(cut) + 2 * u32::from(corners)),
         Split::Poke => (6, 0),
+        Split::NWay { n, triangles } => (7 + triangles as u32, n),
     };
     out.array(&[kind, more]);
 }
@@ -334,6 +335,9 @@ fn split(from: &mut Reader<'_>) -> Read<Split> {
         4 => Ok(Split::Mixed),
         5 => Ok(Split::MidEdge { cut: more & 1 == 1, corners: more & 2 == 2 }),
         6 => Ok(Split::Poke),
+        7 => Ok(Split::NWay { n: more, triangles: Triangles::All }),
+        8 => Ok(Split::NWay { n: more, triangles: Triangles::Some }),
+        9 => Ok(Split::NWay { n: more, triangles: Triangles::None }),
         _ => Err(Damaged),
     }
 }

@@ -55,7 +55,10 @@ fn meshes_plans_and_levels_come_back() {
             let copy = Mesh::unpack(&mesh.pack()).unwrap();
             assert_eq!(copy, *mesh, "{name}");
             let copy = Arc::new(copy);
-            for scheme in SCHEMES.iter().filter(|s| triangles || s.info.accepts != Accepts::Triangles) {
+            for scheme in SCHEMES
+                .iter()
+                .filter(|s| triangles || !matches!(s.info.accepts, Accepts::Triangles | Accepts::TrianglesThenQuads))
+            {
                 for (level, boundary) in
                     [(0, Boundary::EdgeOnly), (1, Boundary::EdgeAndCorner), (2, Boundary::EdgeOnly)]
                 {
@@ -84,6 +87,9 @@ fn parameters_are_sent_as_they_were_set() {
             for share in [0.0, 0.3, 1.0] {
                 let value = match param.domain {
                     limn_mesh::Domain::Number { low, high, .. } => low + share * (high - low),
+                    limn_mesh::Domain::Whole { low, high, .. } => {
+                        (f64::from(low) + share * f64::from(high - low)).round()
+                    }
                     limn_mesh::Domain::Choice(words) => (share * (words.len() - 1) as f64).round(),
                 };
                 assert!(plan.params.set(&scheme.info, at, value), "{} {}", scheme.info.id, param.key);

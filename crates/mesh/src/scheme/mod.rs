@@ -22,11 +22,13 @@ mod linear;
 mod loop_;
 mod mid_edge;
 mod modified_butterfly;
+mod n_way;
 mod nurss;
 mod params;
 mod poke;
 mod quad_triangle;
 mod sqrt3;
+mod tri_to_quad;
 
 pub use butterfly::Butterfly;
 pub use catmull_clark::CatmullClark;
@@ -38,11 +40,13 @@ pub use linear::Linear;
 pub use loop_::Loop;
 pub use mid_edge::MidEdge;
 pub use modified_butterfly::ModifiedButterfly;
+pub use n_way::NWay;
 pub use nurss::Nurss;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use poke::Poke;
 pub use quad_triangle::QuadTriangle;
 pub use sqrt3::Sqrt3;
+pub use tri_to_quad::TriToQuad;
 
 pub(crate) use loop_::weight as loop_weight;
 
@@ -50,7 +54,7 @@ use crate::FULL;
 use crate::crease::{self, Creases};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
-use crate::split::{FaceShape, Level, Split};
+use crate::split::{FaceShape, Level, Split, Triangles};
 use crate::topology::{Connectivity, is_boundary};
 
 /// Every scheme, in the order of the menu.
@@ -58,6 +62,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<CatmullClark>(),
     entry::<Loop>(),
     quad_triangle::quad_triangle(),
+    entry::<TriToQuad>(),
     entry::<Sqrt3>(),
     entry::<JSpline>(),
     entry::<Butterfly>(),
@@ -71,6 +76,7 @@ pub static SCHEMES: &[Entry] = &[
     entry::<Linear>(),
     entry::<Poke>(),
     fractal::fractal(),
+    entry::<NWay>(),
 ];
 
 /// The scheme with this id.
@@ -108,6 +114,8 @@ pub enum Accepts {
     Polygons,
     /// Triangles only; other faces have to be triangulated first.
     Triangles,
+    /// Triangles, which become quads, and quads from then on; other faces have to be triangulated first.
+    TrianglesThenQuads,
     /// Any polygons; the triangle split where all faces are triangles, else the quad split (or, of that family, the mixed).
     Both,
 }
@@ -129,6 +137,10 @@ pub enum Family {
     MidEdge,
     /// Splits faces into triangles around their middle.
     Poke,
+    /// The quad split, of triangles too.
+    Quads,
+    /// Splits edges in any number of parts, and faces in grids.
+    NWay,
 }
 
 impl Info {
@@ -139,6 +151,7 @@ impl Info {
         }
         match (self.accepts, shape == FaceShape::Triangles) {
             (Accepts::Triangles, false) => None,
+            (Accepts::TrianglesThenQuads, _) if shape == FaceShape::Polygons => None,
             _ if self.family == Family::Dual => Some(Split::Dual { rounded: boundary != Boundary::EdgeAndCorner }),
             _ if self.family == Family::Mixed && shape == FaceShape::Polygons => Some(Split::Mixed),
             _ if self.family == Family::Sqrt3 => Some(Split::Sqrt3 { trisect: false }),
@@ -146,7 +159,10 @@ impl Info {
                 Some(Split::MidEdge { cut: false, corners: boundary == Boundary::EdgeAndCorner })
             }
             _ if self.family == Family::Poke => Some(Split::Poke),
-            (Accepts::Polygons, _) | (Accepts::Both, false) => Some(Split::Quad),
+            _ if self.family == Family::NWay => {
+                Some(Split::NWay { n: params[0] as u32, triangles: Triangles::of(shape) })
+            }
+            (Accepts::Polygons | Accepts::TrianglesThenQuads, _) | (Accepts::Both, false) => Some(Split::Quad),
             (Accepts::Triangles, true) | (Accepts::Both, true) => Some(Split::Triangle),
         }
     }
@@ -241,7 +257,8 @@ pub struct Tags<'a> {
     /// How sharp edges and vertices of the level are; none if none is marked.
     pub creases: Option<&'a Creases>,
     /// Corners that the split treats by name, by their half-edges: of the dual split those with two images, children from
-    /// `half_edges()` on; of the mid-edge split those that are kept, children from `edges()` on.
+    /// `half_edges()` on; of the mid-edge split those that are kept, children from `edges()` on. Of the mixed
+    /// and the n-way split the faces that they have to tell apart.
     pub lone: &'a [u32],
     /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
     pub knots: &'a [f32],
@@ -362,7 +379,7 @@ fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut
 /// where the scheme makes such.
 fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
-        (level, Family::Primal) => S::rules(level, split, tags, sink),
+        (level, Family::Primal | Family::Quads) => S::rules(level, split, tags, sink),
         (Level::Base(c), _) => S::rules(*c, split, tags, sink),
         _ => unreachable!("stored levels come of stored levels"),
     }

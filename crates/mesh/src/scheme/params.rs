@@ -37,6 +37,15 @@ pub enum Domain {
         /// Unless set.
         default: f64,
     },
+    /// A whole number.
+    Whole {
+        /// The least.
+        low: u32,
+        /// The greatest.
+        high: u32,
+        /// Unless set.
+        default: u32,
+    },
     /// One of these words, by number; the first unless set.
     Choice(&'static [&'static str]),
 }
@@ -46,6 +55,7 @@ impl Domain {
     pub fn default(&self) -> f64 {
         match self {
             Domain::Number { default, .. } => *default,
+            Domain::Whole { default, .. } => f64::from(*default),
             Domain::Choice(_) => 0.0,
         }
     }
@@ -54,6 +64,9 @@ impl Domain {
     pub fn holds(&self, value: f64) -> bool {
         match self {
             Domain::Number { low, high, .. } => (*low..=*high).contains(&value),
+            Domain::Whole { low, high, .. } => {
+                (f64::from(*low)..=f64::from(*high)).contains(&value) && value.fract() == 0.0
+            }
             Domain::Choice(words) => value >= 0.0 && value < words.len() as f64 && value.fract() == 0.0,
         }
     }

@@ -3,7 +3,7 @@
 //! Faces and corners come first; edges are half the corners and the rim together, since every edge has two sides but those of
 //! the rim. Cost: constant. Limit: 64 bits.
 
-use super::Split;
+use super::{Split, Triangles};
 use crate::topology::{CHAINS, Counts};
 
 impl Split {
@@ -143,6 +143,46 @@ impl Split {
                 rim: [0, one, 0, two.checked_add(three)?.checked_add(more)?],
                 ..Counts::default()
             },
+            Split::NWay { n, triangles } => {
+                let n = u64::from(n);
+                let [triangles, sides] = match triangles {
+                    Triangles::All => [c.faces, c.boundary],
+                    Triangles::Some => c.triangles,
+                    Triangles::None => [0; 2],
+                };
+                let (half, rows, odd) = (n / 2, (n - 1) / 2, n % 2);
+                let polygons = c.faces.checked_sub(triangles)?;
+                let corners = c.corners.checked_sub(triangles.checked_mul(3)?)?;
+                let in_triangles = triangles.checked_mul((n - 1) * (n - 2) / 2)?;
+                let middles = if odd == 0 { polygons } else { 0 };
+                let quads = corners.checked_mul(half * half + odd * half)?;
+                let small = triangles.checked_mul(n * n)?;
+                let new_corners = small.checked_mul(3)?.checked_add(quads.checked_mul(4)?)?;
+                let new_corners = new_corners.checked_add(odd * corners)?;
+                let boundary = c.boundary.checked_mul(n)?;
+                Counts {
+                    vertices: c
+                        .vertices
+                        .checked_add(c.edges.checked_mul(n - 1)?)?
+                        .checked_add(in_triangles)?
+                        .checked_add(middles)?
+                        .checked_add(corners.checked_mul(half * rows)?)?,
+                    edges: new_corners.checked_add(boundary)? / 2,
+                    faces: small.checked_add(quads)?.checked_add(odd * polygons)?,
+                    corners: new_corners,
+                    boundary,
+                    triangles: [small, sides.checked_mul(n)?],
+                    rim: [
+                        one,
+                        two.checked_add(c.boundary.checked_sub(sides)?.checked_mul(n - 1)?)?,
+                        three.checked_add(sides.checked_mul(n - 1)?)?,
+                        more,
+                    ],
+                    tips: if sides == 0 { 0 } else { c.tips },
+                    digons: c.digons,
+                    chains: lonely(c.digons),
+                }
+            }
         };
         Some(new)
     }

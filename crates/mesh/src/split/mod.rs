@@ -21,11 +21,13 @@
 mod counts;
 pub(crate) mod mid_edge;
 pub(crate) mod mixed;
+pub(crate) mod n_way;
 mod poke;
 mod quad;
 pub(crate) mod stored;
 mod triangle;
 
+pub use n_way::Triangles;
 pub use quad::QuadLevel;
 pub use stored::FaceKind;
 pub use triangle::TriangleLevel;
@@ -60,6 +62,13 @@ pub enum Split {
     },
     /// Every face of n corners becomes n triangles around a new face point. Takes any polygons.
     Poke,
+    /// Every edge in n parts: triangles become n^2 triangles, other faces quads. Takes any polygons.
+    NWay {
+        /// At least 2.
+        n: u32,
+        /// Which faces are cut as triangles.
+        triangles: Triangles,
+    },
 }
 
 /// What the faces of a level look like.
@@ -74,11 +83,12 @@ pub enum FaceShape {
 }
 
 impl Split {
-    /// What the faces look like after this split of faces that look like `_before`.
-    pub fn face_shape(self, _before: FaceShape) -> FaceShape {
+    /// What the faces look like after this split of faces that look like `before`.
+    pub fn face_shape(self, before: FaceShape) -> FaceShape {
         match self {
             Split::Quad => FaceShape::Quads,
             Split::Triangle | Split::Sqrt3 { .. } | Split::Poke => FaceShape::Triangles,
+            Split::NWay { .. } => before,
             Split::Mixed | Split::Dual { .. } | Split::MidEdge { .. } => FaceShape::Polygons,
         }
     }
@@ -111,13 +121,14 @@ impl Split {
     /// What only some have a child for ([`crate::scheme::Tags::lone`]): of the dual split the corners of `c` with two images,
     /// by their half-edges, children from `half_edges()` on; of the mid-edge split the corners that are kept, by their
     /// half-edges, children from `edges()` on; of the mixed split the faces that are no triangles, children from
-    /// `vertices()` on. Cost: linear where there can be any.
+    /// `vertices()` on; of the n-way split its list where it needs one. Cost: linear where there can be any.
     pub(crate) fn lone(self, c: &impl Connectivity) -> Vec<u32> {
         match self {
             _ if !crate::FULL => Vec::new(),
             Split::Dual { rounded: true } => stored::lone_corners(c),
             Split::MidEdge { cut: true, corners: true } => mid_edge::tips(c),
             Split::Mixed => mixed::pointed_faces(c),
+            Split::NWay { triangles: Triangles::Some, .. } => n_way::list(c),
             _ => Vec::new(),
         }
     }
@@ -162,6 +173,7 @@ impl Split {
             Split::MidEdge { cut: false, .. } => c.edges() + c.boundary_half_edges(),
             Split::MidEdge { .. } => c.edges() + self.lone(c).len() as u32,
             Split::Poke => c.vertices() + c.faces(),
+            Split::NWay { n, triangles } => n_way::Grid::of(c, n, triangles, &self.lone(c)).vertices(),
         }
     }
 
@@ -191,6 +203,7 @@ impl Split {
             Split::Mixed => mixed::cut(c, &self.lone(c)),
             Split::MidEdge { cut, .. } => mid_edge::faces(c, cut, &self.lone(c)),
             Split::Poke => poke::faces(c),
+            Split::NWay { n, triangles } => n_way::faces(c, n, triangles, &self.lone(c)),
             _ => stored::dual(c, &self.lone(c)),
         }
     }

@@ -75,6 +75,7 @@ impl Cut {
             super::Split::Mixed => super::mixed::mates(parent),
             super::Split::MidEdge { cut, .. } => super::mid_edge::mates(parent, cut, &split.lone(parent)),
             super::Split::Poke => super::poke::mates(parent),
+            super::Split::NWay { n, triangles } => super::n_way::mates(parent, n, triangles),
             _ => self.dual_mates(parent, &split.lone(parent)),
         };
         Topology::manifold(self.offsets.clone(), self.corners.clone(), vertices, mate)
