@@ -28,7 +28,7 @@ use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::scheme::{Decay, Tags};
 use crate::sink::Row;
-use crate::split::{Level, Split, mixed};
+use crate::split::{Level, Split, mixed, n_way};
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// How sharp a level is. Edges by their ids; boundary edges are not in it, because they always are.
@@ -146,8 +146,25 @@ impl Creases {
             Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
             Split::Mixed => Some(mixed::halves(parent, h)),
             Split::Poke => Some([3 * h; 2]),
-            Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } => None,
+            Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
         };
+        if let Split::NWay { n, triangles } = split {
+            let places = n_way::Places::new(parent, n, triangles);
+            for &e in &self.sharp {
+                let (h, s) = (parent.edge_half_edge(e), self.edges[e as usize]);
+                for part in 0..n {
+                    // Between the ends the crease meets no other.
+                    let left = match part {
+                        0 => self.half(parent, parent.origin(h), s, decay),
+                        _ if part + 1 == n => self.half(parent, parent.origin(parent.next(h)), s, decay),
+                        _ => less(s),
+                    };
+                    out.sharpen(child, places.slot(h, part), left);
+                }
+            }
+            out.stay(self.vertices.iter().map(|&s| less(s)).collect());
+            return out.some();
+        }
         for &e in &self.sharp {
             let h = parent.edge_half_edge(e);
             let s = self.edges[e as usize];

@@ -14,14 +14,14 @@
 //!
 //! On quads these are Catmull and Clark's rules. On triangles the edge points are not: it is a scheme of its own, which keeps
 //! more of a mesh's shape. Along boundaries averaging takes the boundary only, as Warren and Schaefer have it: the cubic
-//! B-spline of the curve. With `average=off` the first part is left alone: a linear split.
+//! B-spline of the curve; creases are Catmull-Clark's. With `average=off` the first part is left alone: a linear split.
 //!
 //! Takes triangles, and quads as it leaves them. C2 but at extraordinary vertices. Cost: about 60 ns an output face.
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, face_centroids, kept_or_curve};
+use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, edge_point, face_centroids, vertex_point};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary};
+use crate::topology::Connectivity;
 
 /// See the module.
 #[derive(Debug)]
@@ -51,23 +51,25 @@ impl Scheme for TriToQuad {
         face_centroids(c, split, sink);
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            let (a, b, t) = (c.origin(h), c.origin(c.next(h)), c.twin(h));
-            if still || is_boundary(t) {
+            let (a, b) = (c.origin(h), c.origin(c.next(h)));
+            if still {
                 return row.pair(a, b, 0.5);
             }
-            row.pair(a, b, 0.25);
-            for h in [h, t] {
-                row.child(face_point + c.face(h), 0.125);
-                // The midpoints before and after: their ends on the edge, and the two others.
-                row.pair(a, b, 1.0 / 32.0);
-                row.pair(c.origin(c.prev(h)), c.origin(c.next(c.next(h))), 1.0 / 32.0);
-            }
+            edge_point(c, (e, h), tags, row, |row| {
+                row.pair(a, b, 0.25);
+                for h in [h, c.twin(h)] {
+                    row.child(face_point + c.face(h), 0.125);
+                    // The midpoints before and after: their ends on the edge, and the two others.
+                    row.pair(a, b, 1.0 / 32.0);
+                    row.pair(c.origin(c.prev(h)), c.origin(c.next(c.next(h))), 1.0 / 32.0);
+                }
+            });
         });
         sink.pass(0, c.vertices(), |v, row| {
             if still {
                 return row.vertex(v, 1.0);
             }
-            if !kept_or_curve(c, v, tags, row) {
+            vertex_point(c, v, tags, row, |row| {
                 let mut n = 0.0;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);
@@ -76,7 +78,7 @@ impl Scheme for TriToQuad {
                 });
                 row.scale(1.0 / (n * n));
                 row.vertex(v, 1.0 - 2.0 / n);
-            }
+            });
         });
     }
 }

@@ -242,15 +242,30 @@ fn is_cut_as_triangle(c: &impl Connectivity, f: u32, triangles: Triangles) -> bo
 }
 
 /// Where child half-edges are.
-struct Places<'a> {
-    c: &'a Topology,
+pub(crate) struct Places<'a, C> {
+    c: &'a C,
     n: u32,
     triangles: Triangles,
     /// The first child half-edge of each face.
     start: Vec<u32>,
+    /// How many there are.
+    all: u32,
 }
 
-impl Places<'_> {
+impl<'a, C: Connectivity> Places<'a, C> {
+    pub fn new(c: &'a C, n: u32, triangles: Triangles) -> Places<'a, C> {
+        let mut p = Places { c, n, triangles, start: Vec::with_capacity(c.faces() as usize), all: 0 };
+        for f in 0..c.faces() {
+            p.start.push(p.all);
+            let k = c.face_half_edges(f).len() as u32;
+            p.all += match is_cut_as_triangle(c, f, triangles) {
+                true => 3 * n * n,
+                false => 4 * k * p.a_corner() + if n % 2 == 1 { k } else { 0 },
+            };
+        }
+        p
+    }
+
     /// Quads of a polygon's corner: its grid, and the strip where n is odd.
     fn a_corner(&self) -> u32 {
         let half = self.n / 2;
@@ -288,7 +303,7 @@ impl Places<'_> {
     }
 
     /// The child half-edge on part `s` of half-edge `h`, counted from its origin.
-    fn slot(&self, h: u32, s: u32) -> u32 {
+    pub fn slot(&self, h: u32, s: u32) -> u32 {
         let (c, n, half) = (self.c, self.n, self.n / 2);
         let f = c.face(h);
         if is_cut_as_triangle(c, f, self.triangles) {
@@ -317,17 +332,8 @@ impl Places<'_> {
 /// Their twins.
 pub(super) fn mates(c: &Topology, n: u32, triangles: Triangles) -> Vec<u32> {
     let (half, odd) = (n / 2, n % 2 == 1);
-    let mut p = Places { c, n, triangles, start: Vec::with_capacity(c.faces() as usize + 1) };
-    let mut all = 0;
-    for f in 0..c.faces() {
-        p.start.push(all);
-        let k = c.face_half_edges(f).len() as u32;
-        all += match is_cut_as_triangle(c, f, triangles) {
-            true => 3 * n * n,
-            false => 4 * k * p.a_corner() + if odd { k } else { 0 },
-        };
-    }
-    let mut mate = Vec::with_capacity(all as usize);
+    let p = Places::new(c, n, triangles);
+    let mut mate = Vec::with_capacity(p.all as usize);
     for f in 0..c.faces() {
         let corners = c.face_half_edges(f);
         let h = corners.start;
