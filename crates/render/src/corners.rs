@@ -3,7 +3,7 @@
 //! ```text
 //!        2            bit c   of flags: the edge opposite corner c is an edge of the polygon (not a diagonal)
 //!       / \           bit c+3 of flags: that edge is (part of) an edge of the level before
-//!      /   \
+//!      /   \          bits 6 and 7: the polygon's kind, see [`SurfaceData::kind_of`]
 //!     0-----1         the corner number is vertex_index % 3, so barycentrics need no memory
 //! ```
 //!
@@ -38,7 +38,7 @@ pub struct Corner {
     pub normal: [i16; 2],
     /// Normal of the whole polygon, octahedral.
     pub face: [i16; 2],
-    /// Edge bits, see the module.
+    /// Edge and kind bits, see the module.
     pub flags: u32,
 }
 
@@ -86,10 +86,11 @@ impl Builder {
             _ => (data.triangulate)(data.points, polygon, &mut self.triangles),
         }
         let face = pack::normal(newell(data.points, polygon));
+        let kind = data.kind_of.map_or(0, |kind| kind(f) & 3) << 6;
         for t in self.triangles.iter().take(n - 2) {
             let [Some(&a), Some(&b), Some(&c)] = t.map(|l| polygon.get(l as usize)) else { continue };
             let (local, global) = (*t, [a, b, c]);
-            let flags = edge_flags(local, global, n as u32, data.parents);
+            let flags = edge_flags(local, global, n as u32, data.parents) | kind;
             for (l, v) in local.into_iter().zip(global) {
                 let v = v as usize;
                 let normal = data.normals.get(v).map_or(face, |&m| pack::normal(m));

@@ -28,6 +28,7 @@ mod light;
 mod material;
 pub mod overlay;
 pub mod pack;
+mod pane;
 mod pipelines;
 mod renderer;
 mod screen;

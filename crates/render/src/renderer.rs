@@ -1,56 +1,41 @@
 //! The renderer: what is on the GPU, and the recording of a frame.
 //!
 //! A frame is one multisampled pass in a fixed order (surface, ground, hidden lines, lines, points), resolved, and then
-//! the final pass to the caller's view. Nothing here decides when to draw. The CPU's share depends on the number
+//! the final pass to the caller's view. Several panes are drawn one after the other in that one pass, each cut to its part of
+//! the view; their cameras say where in it a pane's picture lies. Nothing here decides when to draw. The CPU's share depends on the number
 //! of parts and buffers, never on the number of faces.
 
 use crate::ground::{GROUND_VERTICES, Placement, Shadow};
 use crate::image::Pixels;
 use crate::material::{Material, Materials, TextureData};
 use crate::overlay::Instances;
+use crate::pane::{Pane, ShadowKey};
 use crate::pipelines::{Kind, Pipelines, Vertices};
 use crate::style::{Edges, Frame};
-use crate::surface::{Bounds, Layout, Run, Surface, SurfaceData, buffer};
+use crate::surface::{Bounds, Layout, Surface, SurfaceData};
 use crate::target::Target;
-use crate::uniform::{Content, Globals, Viewer, globals};
+use crate::uniform::{Content, globals};
 use crate::{Error, Gpu, Upload};
 
-/// One draw of the surface: a stretch of a chunk with one material.
-struct Stretch {
-    chunk: usize,
-    first: u32,
-    count: u32,
-    material: u32,
+/// What one pane's draws are.
+struct Draws {
+    kinds: Vec<Kind>,
+    ground: bool,
+    cage: bool,
+    /// Points of their own, or the vertices of shared quads.
+    points: Option<Kind>,
 }
 
-/// What the shadow map was made of.
-#[derive(PartialEq)]
-struct ShadowKey {
-    version: u64,
-    hidden: Vec<bool>,
-    placement: Placement,
-}
-
-/// Draws one model: its surface, cage and points.
+/// Draws one model, or several versions of it in panes: surfaces and points, and one cage.
 pub struct Renderer {
     gpu: Gpu,
     format: wgpu::TextureFormat,
     pipelines: Pipelines,
     materials: Materials,
     sampler: wgpu::Sampler,
-    uniform: wgpu::Buffer,
-    uniform_group: wgpu::BindGroup,
     target: Option<Target>,
-    surface: Option<Surface>,
-    /// Counts surfaces, so that what was made of an older one is known.
-    version: u64,
-    stretches: Vec<Stretch>,
-    /// The version and the hidden groups that `stretches` was made of.
-    stretches_of: (u64, Vec<bool>),
+    panes: Vec<Pane>,
     cage: Instances,
-    points: Instances,
-    shadow: Option<Shadow>,
-    shadow_of: Option<ShadowKey>,
 }
 
 impl Renderer {
@@ -64,35 +49,8 @@ impl Renderer {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        let uniform = buffer(
-            &gpu,
-            "globals",
-            size_of::<Globals>() as u64,
-            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        );
-        let uniform_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("globals"),
-            layout: &pipelines.uniform,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
-        });
-        Renderer {
-            gpu,
-            format,
-            pipelines,
-            materials,
-            sampler,
-            uniform,
-            uniform_group,
-            target: None,
-            surface: None,
-            version: 0,
-            stretches: Vec::new(),
-            stretches_of: (0, Vec::new()),
-            cage: Instances::default(),
-            points: Instances::default(),
-            shadow: None,
-            shadow_of: None,
-        }
+        let panes = vec![Pane::new(&gpu, &pipelines)];
+        Renderer { gpu, format, pipelines, materials, sampler, target: None, panes, cage: Instances::default() }
     }
 
     /// The device.
@@ -108,10 +66,33 @@ impl Renderer {
         Upload::new(&self.gpu, data)
     }
 
-    /// Shows a surface from now on, or none; the one before is freed.
+    /// Shows a surface from now on, or none; the one before is freed, and so are the points set for it.
     pub fn show(&mut self, surface: Option<Surface>) {
-        self.surface = surface;
-        self.version += 1;
+        self.show_in(0, surface);
+    }
+
+    /// As [`Renderer::show`] for any pane; panes come with their first surface.
+    pub fn show_in(&mut self, pane: usize, surface: Option<Surface>) {
+        while self.panes.len() <= pane {
+            self.panes.push(Pane::new(&self.gpu, &self.pipelines));
+        }
+        if let Some(pane) = self.panes.get_mut(pane) {
+            pane.surface = surface;
+            pane.points = Instances::default();
+            pane.version += 1;
+        }
+    }
+
+    /// Lets two panes that there are change places.
+    pub fn swap(&mut self, a: usize, b: usize) {
+        if a.max(b) < self.panes.len() {
+            self.panes.swap(a, b);
+        }
+    }
+
+    /// Frees the panes from the `count`th on; the first stays.
+    pub fn keep_panes(&mut self, count: usize) {
+        self.panes.truncate(count.max(1));
     }
 
     /// Uploads and shows a surface in one go.
@@ -125,9 +106,14 @@ impl Renderer {
         Ok(())
     }
 
-    /// The surface that is shown.
+    /// The surface that is shown in the first pane.
     pub fn surface(&self) -> Option<&Surface> {
-        self.surface.as_ref()
+        self.surface_in(0)
+    }
+
+    /// The surface that is shown in a pane.
+    pub fn surface_in(&self, pane: usize) -> Option<&Surface> {
+        self.panes.get(pane)?.surface.as_ref()
     }
 
     /// The cage: points and edges of level 0. Empty slices remove it.
@@ -141,7 +127,22 @@ impl Renderer {
 
     /// Points to be shown with [`crate::Style::points`]. Empty: the vertices of shared quads are shown, at no cost.
     pub fn set_points(&mut self, points: &[[f32; 3]]) -> Result<(), Error> {
-        self.points = Instances::points(&self.gpu, points)?;
+        self.set_points_in(0, points)
+    }
+
+    /// Whether a pane has points of its own.
+    pub fn has_points(&self, pane: usize) -> bool {
+        self.panes.get(pane).is_some_and(|p| !p.points.chunks.is_empty())
+    }
+
+    /// As [`Renderer::set_points`] for a pane that there is.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_points`].
+    pub fn set_points_in(&mut self, pane: usize, points: &[[f32; 3]]) -> Result<(), Error> {
+        if let Some(pane) = self.panes.get_mut(pane) {
+            pane.points = Instances::points(&self.gpu, points)?;
+        }
         Ok(())
     }
 
@@ -173,11 +174,25 @@ impl Renderer {
     /// # Errors
     /// [`Error::ImageSize`] past the largest texture, [`Error::Lost`] after the device went.
     pub fn draw(&mut self, view: &wgpu::TextureView, size: [u32; 2], frame: &Frame<'_>) -> Result<(), Error> {
+        self.draw_panes(view, size, &[(frame, [0, 0, size[0], size[1]])])
+    }
+
+    /// Draws one frame a pane, each cut to its part of the view: left, top, width and height in device pixels. The camera's
+    /// projection is that of the whole view. Background and size are the first frame's.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_panes(
+        &mut self,
+        view: &wgpu::TextureView,
+        size: [u32; 2],
+        frames: &[(&Frame<'_>, [u32; 4])],
+    ) -> Result<(), Error> {
         let target = match self.target.take() {
             Some(target) if target.size == size => target,
             _ => self.new_target(size)?,
         };
-        let encoder = self.record(view, &target, frame, self.format, false);
+        let encoder = self.record(view, &target, frames, self.format, false);
         self.target = Some(target);
         self.gpu.queue.submit([encoder?.finish()]);
         Ok(())
@@ -194,6 +209,19 @@ impl Renderer {
         width: u32,
         height: u32,
     ) -> Result<impl Future<Output = Result<Vec<u8>, Error>> + use<>, Error> {
+        self.image_panes(&[(frame, [0, 0, width, height])], width, height)
+    }
+
+    /// As [`Renderer::image`] of several panes: [`Renderer::draw_panes`].
+    ///
+    /// # Errors
+    /// As [`Renderer::image`].
+    pub fn image_panes(
+        &mut self,
+        frames: &[(&Frame<'_>, [u32; 4])],
+        width: u32,
+        height: u32,
+    ) -> Result<impl Future<Output = Result<Vec<u8>, Error>> + use<>, Error> {
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let target = self.new_target([width, height])?;
         let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -207,7 +235,7 @@ impl Renderer {
             view_formats: &[],
         });
         let view = texture.create_view(&Default::default());
-        let encoder = self.record(&view, &target, frame, format, true)?;
+        let encoder = self.record(&view, &target, frames, format, true)?;
         Ok(Pixels::read(&self.gpu, &texture, encoder))
     }
 
@@ -223,65 +251,21 @@ impl Renderer {
         &mut self,
         view: &wgpu::TextureView,
         target: &Target,
-        frame: &Frame<'_>,
+        frames: &[(&Frame<'_>, [u32; 4])],
         format: wgpu::TextureFormat,
         straight: bool,
     ) -> Result<wgpu::CommandEncoder, Error> {
         if let Some(reason) = self.gpu.lost() {
             return Err(Error::Lost(reason));
         }
-        let style = &frame.style;
-        let wire = style.edges == Edges::Wire;
-        let vertices = self.surface.as_ref().filter(|_| style.surface).map(|s| match &s.layout {
-            Layout::Shared { colors: None, .. } => Vertices::Shared,
-            Layout::Shared { colors: Some(_), .. } => Vertices::SharedColor,
-            Layout::Corners { extras: false } => Vertices::Corner,
-            Layout::Corners { extras: true } => Vertices::CornerExtra,
-        });
-        self.plan(frame.hidden_groups);
-
-        let ground = self.ground(frame, wire || vertices.is_none());
-        // The vertices of shared quads serve as points where no others were given.
-        let own_points = !self.points.chunks.is_empty();
-        let shared_points = match self.surface.as_ref().map(|s| &s.layout) {
-            Some(Layout::Shared { vertices, count, .. }) if !own_points => Some((vertices.clone(), *count)),
-            _ => None,
-        };
-        let kinds: &[Kind] = match (vertices, wire) {
-            (Some(v), false) => &[Kind::Surface(v)],
-            (Some(v), true) => &[Kind::Depth(v), Kind::WireHidden(v), Kind::Wire(v)],
-            (None, _) => &[],
-        };
-        for &kind in kinds {
-            self.pipelines.prepare(&self.gpu, kind);
-        }
-        let cage = style.cage && !self.cage.chunks.is_empty();
-        if cage {
-            self.pipelines.prepare(&self.gpu, Kind::LineHidden);
-            self.pipelines.prepare(&self.gpu, Kind::Line);
-        }
-        let point_stride = if own_points { 12 } else { 16 };
-        if style.points {
-            self.pipelines.prepare(&self.gpu, Kind::Point(point_stride));
-        }
         self.pipelines.prepare(&self.gpu, Kind::Final(format));
-
-        let content = Content {
-            kinds: match self.surface.as_ref().map(|s| &s.layout) {
-                Some(Layout::Shared { kinds, .. }) => *kinds,
-                _ => [0; 2],
-            },
-            has_colors: self.surface.as_ref().is_some_and(|s| s.has_colors),
-            has_uv: self.surface.as_ref().is_some_and(|s| s.has_uv),
-            ground,
-        };
-        let value = globals(frame, target.size, &content, straight);
-        self.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&value));
-
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        if let Some(placement) = &content.ground {
-            self.update_shadow(&mut encoder, placement, frame.hidden_groups);
+        let mut draws = Vec::with_capacity(frames.len());
+        let mut panes = std::mem::take(&mut self.panes);
+        for (pane, (frame, _)) in panes.iter_mut().zip(frames) {
+            draws.push(self.prepare(pane, &mut encoder, frame, target.size, straight));
         }
+        self.panes = panes;
         let single = self.gpu.samples == 1;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("model"),
@@ -301,39 +285,13 @@ impl Renderer {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.uniform_group, &[]);
-        for &kind in kinds {
-            if let Some(pipeline) = self.pipelines.get(kind) {
-                pass.set_pipeline(pipeline);
-                self.draw_surface(&mut pass, true);
+        for ((pane, draws), (frame, [x, y, width, height])) in self.panes.iter().zip(&draws).zip(frames) {
+            if frames.len() > 1 {
+                let [w, h] = target.size;
+                let (x, y) = (*x.min(&w), *y.min(&h));
+                pass.set_scissor_rect(x, y, (*width).min(w - x), (*height).min(h - y));
             }
-        }
-        if let (Some(_), Some(shadow), Some(pipeline)) =
-            (&content.ground, &self.shadow, self.pipelines.get(Kind::Ground))
-        {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, shadow.group(), &[]);
-            pass.draw(0..GROUND_VERTICES, 0..1);
-        }
-        let overlays = [
-            (cage && style.hidden > 0.0, Kind::LineHidden, &self.cage),
-            (cage, Kind::Line, &self.cage),
-            (style.points && own_points, Kind::Point(12), &self.points),
-        ];
-        for (shown, kind, instances) in overlays {
-            let Some(pipeline) = self.pipelines.get(kind).filter(|_| shown) else { continue };
-            pass.set_pipeline(pipeline);
-            for (buffer, count) in &instances.chunks {
-                pass.set_vertex_buffer(0, buffer.slice(..));
-                pass.draw(0..4, 0..*count);
-            }
-        }
-        if let (true, Some((buffer, count)), Some(pipeline)) =
-            (style.points, &shared_points, self.pipelines.get(Kind::Point(16)))
-        {
-            pass.set_pipeline(pipeline);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..4, 0..*count);
+            self.draw_pane(&mut pass, pane, draws, frame);
         }
         drop(pass);
 
@@ -352,7 +310,7 @@ impl Renderer {
         });
         if let Some(pipeline) = self.pipelines.get(Kind::Final(format)) {
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &self.uniform_group, &[]);
+            pass.set_bind_group(0, self.panes.first().map(|p| &p.uniform_group), &[]);
             pass.set_bind_group(1, &target.group, &[]);
             pass.draw(0..3, 0..1);
         }
@@ -360,25 +318,108 @@ impl Renderer {
         Ok(encoder)
     }
 
-    /// Where the ground lies in this frame, if it is to be seen.
-    fn ground(&self, frame: &Frame<'_>, without: bool) -> Option<Placement> {
-        let ground = frame.style.ground.filter(|g| g.strength > 0.0 && !without)?;
-        let placement = Placement::new(self.surface.as_ref()?.bounds(), frame.camera.up, ground.height)?;
-        let viewer = Viewer::new(&frame.camera.view, &frame.camera.proj);
-        let above = if viewer.perspective {
-            (viewer.eye - placement.center).dot(placement.up)
-        } else {
-            viewer.rotation.z_axis.dot(placement.up)
+    /// Makes ready what a pane's frame needs: pipelines, its uniforms, its shadow.
+    fn prepare(
+        &mut self,
+        pane: &mut Pane,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+        size: [u32; 2],
+        straight: bool,
+    ) -> Draws {
+        let style = &frame.style;
+        let wire = style.edges == Edges::Wire;
+        let vertices = pane.surface.as_ref().filter(|_| style.surface).map(|s| match &s.layout {
+            Layout::Shared { colors: None, .. } => Vertices::Shared,
+            Layout::Shared { colors: Some(_), .. } => Vertices::SharedColor,
+            Layout::Corners { extras: false } => Vertices::Corner,
+            Layout::Corners { extras: true } => Vertices::CornerExtra,
+        });
+        pane.plan(frame.hidden_groups);
+        let ground = pane.ground(frame, wire || vertices.is_none());
+        // The vertices of shared quads serve as points where no others were given.
+        let shared = matches!(pane.surface.as_ref().map(|s| &s.layout), Some(Layout::Shared { .. }));
+        let points = match (style.points, pane.points.chunks.is_empty(), shared) {
+            (true, false, _) => Some(Kind::Point(12)),
+            (true, true, true) => Some(Kind::Point(16)),
+            _ => None,
         };
-        (above > 0.0).then_some(placement)
+        let cage = style.cage && !self.cage.chunks.is_empty();
+        let kinds = match (vertices, wire) {
+            (Some(v), false) => vec![Kind::Surface(v)],
+            (Some(v), true) => vec![Kind::Depth(v), Kind::WireHidden(v), Kind::Wire(v)],
+            (None, _) => Vec::new(),
+        };
+        let lines: &[Kind] = if cage { &[Kind::LineHidden, Kind::Line] } else { &[] };
+        for &kind in kinds.iter().chain(lines).chain(&points) {
+            self.pipelines.prepare(&self.gpu, kind);
+        }
+        let surface = pane.surface.as_ref();
+        let content = Content {
+            kinds: match surface.map(|s| &s.layout) {
+                Some(Layout::Shared { kinds, .. }) => *kinds,
+                _ => [0; 2],
+            },
+            has_colors: surface.is_some_and(|s| s.has_colors),
+            has_uv: surface.is_some_and(|s| s.has_uv),
+            ground,
+        };
+        let value = globals(frame, size, &content, straight);
+        self.gpu.queue.write_buffer(&pane.uniform, 0, bytemuck::bytes_of(&value));
+        if let Some(placement) = &content.ground {
+            self.update_shadow(pane, encoder, placement, frame.hidden_groups);
+        }
+        Draws { kinds, ground: content.ground.is_some(), cage, points }
     }
 
-    fn update_shadow(&mut self, encoder: &mut wgpu::CommandEncoder, placement: &Placement, hidden: &[bool]) {
-        let key = ShadowKey { version: self.version, hidden: hidden.to_vec(), placement: *placement };
-        if self.shadow_of.as_ref() == Some(&key) {
+    fn draw_pane(&self, pass: &mut wgpu::RenderPass<'_>, pane: &Pane, draws: &Draws, frame: &Frame<'_>) {
+        pass.set_bind_group(0, &pane.uniform_group, &[]);
+        for &kind in &draws.kinds {
+            if let Some(pipeline) = self.pipelines.get(kind) {
+                pass.set_pipeline(pipeline);
+                self.draw_surface(pass, pane, true);
+            }
+        }
+        if let (true, Some(shadow), Some(pipeline)) = (draws.ground, &pane.shadow, self.pipelines.get(Kind::Ground)) {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, shadow.group(), &[]);
+            pass.draw(0..GROUND_VERTICES, 0..1);
+        }
+        let overlays = [
+            (draws.cage && frame.style.hidden > 0.0, Kind::LineHidden, &self.cage),
+            (draws.cage, Kind::Line, &self.cage),
+            (draws.points == Some(Kind::Point(12)), Kind::Point(12), &pane.points),
+        ];
+        for (shown, kind, instances) in overlays {
+            let Some(pipeline) = self.pipelines.get(kind).filter(|_| shown) else { continue };
+            pass.set_pipeline(pipeline);
+            for (buffer, count) in &instances.chunks {
+                pass.set_vertex_buffer(0, buffer.slice(..));
+                pass.draw(0..4, 0..*count);
+            }
+        }
+        if let (Some(kind @ Kind::Point(16)), Some(Layout::Shared { vertices, count, .. })) =
+            (draws.points, pane.surface.as_ref().map(|s| &s.layout))
+            && let Some(pipeline) = self.pipelines.get(kind)
+        {
+            pass.set_pipeline(pipeline);
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.draw(0..4, 0..*count);
+        }
+    }
+
+    fn update_shadow(
+        &mut self,
+        pane: &mut Pane,
+        encoder: &mut wgpu::CommandEncoder,
+        placement: &Placement,
+        hidden: &[bool],
+    ) {
+        let key = ShadowKey { version: pane.version, hidden: hidden.to_vec(), placement: *placement };
+        if pane.shadow_of.as_ref() == Some(&key) {
             return;
         }
-        let stride = match self.surface.as_ref().map(|s| &s.layout) {
+        let stride = match pane.surface.as_ref().map(|s| &s.layout) {
             Some(Layout::Shared { .. }) => 16,
             Some(Layout::Corners { .. }) => 24,
             None => return,
@@ -386,23 +427,23 @@ impl Renderer {
         for kind in [Kind::Cast(stride), Kind::Blur, Kind::Ground] {
             self.pipelines.prepare(&self.gpu, kind);
         }
-        let shadow = self.shadow.take().unwrap_or_else(|| Shadow::new(&self.gpu, &self.pipelines, &self.sampler));
+        let shadow = pane.shadow.take().unwrap_or_else(|| Shadow::new(&self.gpu, &self.pipelines, &self.sampler));
         shadow.update(&self.gpu, &self.pipelines, encoder, placement, |pass| {
             if let Some(pipeline) = self.pipelines.get(Kind::Cast(stride)) {
                 pass.set_pipeline(pipeline);
-                self.draw_surface(pass, false);
+                self.draw_surface(pass, pane, false);
             }
         });
-        self.shadow = Some(shadow);
-        self.shadow_of = Some(key);
+        pane.shadow = Some(shadow);
+        pane.shadow_of = Some(key);
     }
 
     /// Records all stretches with the pipeline that is set. Positions are all that is bound without materials.
-    fn draw_surface(&self, pass: &mut wgpu::RenderPass<'_>, materials: bool) {
-        let Some(surface) = &self.surface else { return };
+    fn draw_surface(&self, pass: &mut wgpu::RenderPass<'_>, pane: &Pane, materials: bool) {
+        let Some(surface) = &pane.surface else { return };
         let mut chunk = usize::MAX;
         let mut material = None;
-        for s in &self.stretches {
+        for s in &pane.stretches {
             let Some(from) = surface.chunks.get(s.chunk) else { continue };
             if chunk != s.chunk {
                 chunk = s.chunk;
@@ -434,48 +475,8 @@ impl Renderer {
         }
     }
 
-    /// Works out the stretches to draw, unless they are still right.
-    fn plan(&mut self, hidden: &[bool]) {
-        if self.stretches_of.0 == self.version && self.stretches_of.1 == hidden {
-            return;
-        }
-        self.stretches_of = (self.version, hidden.to_vec());
-        self.stretches.clear();
-        let Some(surface) = &self.surface else { return };
-        let runs = visible(surface, hidden);
-        for (i, chunk) in surface.chunks.iter().enumerate() {
-            for &(material, first, end) in &runs {
-                let (a, b) = (first.max(chunk.first), end.min(chunk.first + chunk.count));
-                if a < b {
-                    self.stretches.push(Stretch {
-                        chunk: i,
-                        first: (a - chunk.first) as u32,
-                        count: (b - a) as u32,
-                        material,
-                    });
-                }
-            }
-        }
-    }
-
     /// Box around the surface that is shown.
     pub fn bounds(&self) -> Option<Bounds> {
-        self.surface.as_ref().map(Surface::bounds).filter(|b| !b.is_empty())
+        self.surface().map(Surface::bounds).filter(|b| !b.is_empty())
     }
-}
-
-/// Material, first and end of the runs that are shown, neighbours of one material joined.
-fn visible(surface: &Surface, hidden: &[bool]) -> Vec<(u32, u64, u64)> {
-    let mut out: Vec<(u32, u64, u64)> = Vec::new();
-    for &Run { part, first, count } in &surface.runs {
-        let Some(part) = surface.parts.get(part as usize) else { continue };
-        if hidden.get(part.group as usize).copied().unwrap_or(false) {
-            continue;
-        }
-        match out.last_mut() {
-            Some(last) if last.0 == part.material && last.2 == first => last.2 = first + count,
-            _ => out.push((part.material, first, first + count)),
-        }
-    }
-    out
 }

@@ -86,6 +86,8 @@ pub struct Style {
     pub colors: bool,
     /// Whether the materials' own colours are used; otherwise [`Style::base`] stands for all.
     pub materials: bool,
+    /// sRGB colours of faces by their kind (see [`crate::SurfaceData::kind_of`]), in place of all other colours; none ignores kinds.
+    pub kinds: Option<[[f32; 3]; 3]>,
     /// Whether there is light at all. Without it colours appear as they are: for flat pictures and tests.
     pub lit: bool,
     /// sRGB colour of surfaces without a material.
@@ -127,6 +129,7 @@ impl Style {
             textures: true,
             colors: true,
             materials: true,
+            kinds: None,
             lit: true,
             base: [0.80, 0.79, 0.77],
             back: [0.78, 0.50, 0.42],

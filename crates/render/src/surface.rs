@@ -95,6 +95,8 @@ pub struct SurfaceData<'a> {
     pub parts: &'a [Part],
     /// The part of a face; asked for only when there are several parts.
     pub part_of: Option<&'a dyn Fn(usize) -> u32>,
+    /// What kind a face is, 1 to 3, for [`crate::Style::kinds`]; 0 is none. Corners only.
+    pub kind_of: Option<&'a dyn Fn(usize) -> u32>,
     /// How polygons of more than three corners are cut.
     pub triangulate: Triangulate,
     /// Takes the corner layout even where shared quads would do: flat shading then shows one normal a quad.
@@ -113,6 +115,7 @@ impl<'a> SurfaceData<'a> {
             colors: &[],
             parts: &[],
             part_of: None,
+            kind_of: None,
             triangulate: fan,
             force_corners: false,
         }

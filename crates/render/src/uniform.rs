@@ -33,6 +33,7 @@ pub(crate) struct Globals {
     pub ground_y: [f32; 4],
     pub bits: [u32; 4],
     pub hidden: [f32; 4],
+    pub kinds: [[f32; 4]; 3],
 }
 
 const FLAT: u32 = 1;
@@ -43,6 +44,7 @@ const COLORS: u32 = 16;
 const MATERIALS: u32 = 32;
 const TRANSPARENT: u32 = 64;
 const STRAIGHT: u32 = 128;
+const KINDS: u32 = 256;
 
 /// What of the data the switches depend on.
 pub(crate) struct Content {
@@ -99,6 +101,7 @@ pub(crate) fn globals(frame: &Frame<'_>, size: [u32; 2], content: &Content, stra
     set(style.textures && content.has_uv, TEXTURES);
     set(style.colors && content.has_colors, COLORS);
     set(style.materials, MATERIALS);
+    set(style.kinds.is_some(), KINDS);
     let (top, bottom) = match style.background {
         Background::Solid(c) => (c, c),
         Background::Gradient(a, b) => (a, b),
@@ -142,6 +145,7 @@ pub(crate) fn globals(frame: &Frame<'_>, size: [u32; 2], content: &Content, stra
         ground_y,
         bits: [bits, content.kinds[0], content.kinds[1], 0],
         hidden: [style.hidden.clamp(0.0, 1.0), 0.0, 0.0, 0.0],
+        kinds: style.kinds.unwrap_or_default().map(|c| linear(c, 1.0)),
     }
 }
 

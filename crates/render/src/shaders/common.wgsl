@@ -22,6 +22,7 @@ struct Globals {
     ground_y: vec4<f32>,
     bits: vec4<u32>,             // switches, end of old vertices, end of face points, unused
     hidden: vec4<f32>,           // opacity of hidden lines
+    kinds: array<vec4<f32>, 3>,  // colours of faces by kind
 };
 
 const FLAT: u32 = 1u;
@@ -32,6 +33,7 @@ const COLORS: u32 = 16u;
 const MATERIALS: u32 = 32u;
 const TRANSPARENT: u32 = 64u;
 const STRAIGHT: u32 = 128u;
+const KINDS: u32 = 256u;
 
 @group(0) @binding(0) var<uniform> g: Globals;
 

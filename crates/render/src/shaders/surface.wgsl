@@ -21,7 +21,7 @@ struct Surface {
     @location(2) bary: vec3<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) color: vec3<f32>,
-    @location(5) @interpolate(flat, either) flags: u32, // edges, and bit 8: `face` holds the polygon's normal
+    @location(5) @interpolate(flat, either) flags: u32, // edges, kind, and bit 8: `face` holds the polygon's normal
     @location(6) face: vec3<f32>,
 };
 
@@ -203,6 +203,10 @@ fn fs_shaded(in: Surface, @builtin(front_facing) front: bool) -> @location(0) ve
     }
     if is_on(TEXTURES) && material.has.y != 0u {
         base = texel * base;
+    }
+    let kind = (in.flags >> 6u) & 3u;
+    if is_on(KINDS) && kind > 0u {
+        base = g.kinds[kind - 1u].rgb;
     }
     if !front && !is_on(TWO_SIDED) {
         base = g.back.rgb;
