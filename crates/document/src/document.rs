@@ -28,10 +28,10 @@ use crate::error::CommandError;
 use crate::history::History;
 use crate::link::{self, LinkError};
 use crate::outcome::{Outcome, Replayed};
-use crate::parameters;
 use crate::source::Source;
 use crate::state::{State, check, find_scheme};
 use crate::view::{View, ViewSet};
+use crate::{compare, parameters};
 
 /// How many of the models opened before the present one undo can bring back.
 pub const MODELS_KEPT: usize = 3;
@@ -46,11 +46,11 @@ struct Pending {
 /// A source, the commands given since, and what follows from them. See the module's text.
 #[derive(Debug)]
 pub struct Document {
-    state: Option<State>,
+    pub(crate) state: Option<State>,
     history: History<State>,
     view: View,
     pending: Option<Pending>,
-    budget: u64,
+    pub(crate) budget: u64,
     aspect: f32,
 }
 
@@ -133,6 +133,7 @@ impl Document {
             | Command::CreaseDecay(_)
             | Command::TriangleRule(_)
             | Command::FaceVarying(_)
+            | Command::Compare(_)
             | Command::Boundary(_)
             | Command::Limit(_)
             | Command::Level(_) => self.change(command, drag),
@@ -286,7 +287,8 @@ impl Document {
     /// What going from one state to another means for the host. A camera follows a model that was moved or resized.
     fn compare(&mut self, before: &State, after: &State) -> Outcome {
         if Arc::ptr_eq(&before.built, &after.built) {
-            return if before.plan() == after.plan() { Outcome::Nothing } else { Outcome::Refine };
+            let same = before.plan() == after.plan() && before.settings.beside == after.settings.beside;
+            return if same { Outcome::Nothing } else { Outcome::Refine };
         }
         if before.built.bounds != after.built.bounds {
             let (bounds, aspect) = (after.built.bounds, self.aspect);
@@ -317,7 +319,13 @@ impl Document {
             Command::Scheme { id, parameters } => {
                 let (from, parameters) = parameters::level(parameters, "from")?;
                 let entry = find_scheme(id)?;
-                settings.set_scheme(Run { from, scheme: entry, params: parameters::read(&entry.info, &parameters)? });
+                let run = Run { from, scheme: entry, params: parameters::read(&entry.info, &parameters)? };
+                let present = before.plan().run(0);
+                // A slider on its way past another pane's value leaves that alone.
+                if let Some(pane) = settings.beside.iter_mut().find(|pane| **pane == run && !drag) {
+                    *pane = present;
+                }
+                settings.set_scheme(run);
             }
             Command::Fair { iterations, parameters } => {
                 settings.set_fairing(parameters::fairing(*iterations, parameters)?)
@@ -337,6 +345,10 @@ impl Document {
             Command::Knot { ends, both, interval } => {
                 before.check_crease(&CreaseWhere::Chain(ends.to_vec()))?;
                 Arc::make_mut(&mut after.edits).push(Edit::Knot(*ends, *both, *interval));
+            }
+            Command::Compare(panes) => {
+                let present = before.settings.later.is_empty().then(|| before.plan().run(0));
+                settings.beside = compare::list(panes, present)?;
             }
             Command::Boundary(boundary) => settings.rules.boundary = *boundary,
             Command::Limit(on) => settings.limit = *on,
@@ -447,26 +459,6 @@ impl Document {
     /// The box of level 0, which the camera frames; the unit box without a model.
     pub fn bounds(&self) -> Bounds {
         self.state.as_ref().map_or_else(Bounds::default, |s| s.built.bounds)
-    }
-
-    /// What there is to say about the model: from the file, from building the mesh, from what was changed for the scheme.
-    pub fn remarks(&self) -> Vec<Remark> {
-        let Some(state) = &self.state else { return Vec::new() };
-        let mut remarks = state.imported.to_vec();
-        remarks.extend(state.adapted.clone());
-        let polygons = &state.base.polygons.remarks;
-        remarks.extend(polygons.iter().cloned());
-        if !Arc::ptr_eq(&state.base.polygons, &state.built) {
-            // Building the triangles meets the same trouble again: only what is new is said.
-            remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
-        }
-        let plan = state.plan();
-        if let Some(scheme) = plan.ignores_marks(&state.built.mesh) {
-            let name = scheme.info.name;
-            let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");
-            remarks.push(Remark::new(&text, false));
-        }
-        remarks
     }
 
     /// How many steps can be taken back and done again.

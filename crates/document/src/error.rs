@@ -5,6 +5,7 @@ use limn_mesh::{RefineError, SCHEMES, SHAPES};
 
 use crate::build::BuildError;
 use crate::command::{ParseError, VERSION};
+use crate::compare::MOST_BESIDE;
 
 /// Why a command did nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,6 +74,12 @@ pub enum CommandError {
     /// Fewer than none, or too many.
     #[error("{0} iterations are not possible; a whole number from 0 to {MOST_ITERATIONS} is")]
     Iterations(i32),
+    /// More schemes side by side than there is room for.
+    #[error("compare shows up to {MOST_BESIDE} schemes beside the present one, not {0}; leave some out")]
+    TooManyPanes(usize),
+    /// A scheme beside itself.
+    #[error("compare names {0} twice, or it is the present scheme; give each another scheme or other parameters")]
+    SamePane(String),
     /// A level below the model itself.
     #[error("there is no level {0}: level 0 is the model itself and the lowest")]
     NegativeLevel(i32),

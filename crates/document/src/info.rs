@@ -15,9 +15,11 @@
 //! be a tenth of its size.
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use limn_mesh::{Counts, Stats, refine::grouped};
 
+use crate::build::Remark;
 use crate::camera::Bounds;
 use crate::document::Document;
 
@@ -65,6 +67,25 @@ impl Document {
             bytes: prediction.bytes,
             warnings: self.remarks().into_iter().map(|r| r.text).collect(),
         })
+    }
+
+    /// What there is to say about the model: from the file, from building the mesh, from what was changed for the scheme.
+    pub fn remarks(&self) -> Vec<Remark> {
+        let Some(state) = &self.state else { return Vec::new() };
+        let mut remarks = state.imported.to_vec();
+        remarks.extend(state.adapted.clone());
+        let polygons = &state.base.polygons.remarks;
+        remarks.extend(polygons.iter().cloned());
+        if !Arc::ptr_eq(&state.base.polygons, &state.built) {
+            // Building the triangles meets the same trouble again: only what is new is said.
+            remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
+        }
+        if let Some(scheme) = state.plan().ignores_marks(&state.built.mesh) {
+            let name = scheme.info.name;
+            let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");
+            remarks.push(Remark::new(&text, false));
+        }
+        remarks
     }
 }
 

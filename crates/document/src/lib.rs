@@ -21,6 +21,7 @@ mod bounds;
 mod build;
 pub mod camera;
 pub mod command;
+pub mod compare;
 pub mod document;
 mod error;
 pub mod export;

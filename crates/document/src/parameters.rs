@@ -6,9 +6,10 @@
 use limn_mesh::fairing::MOST_ITERATIONS;
 use limn_mesh::{Domain, Fairing, Info, Param, Params, Plan, Run};
 
-use crate::command::Command;
+use crate::command::{Command, SchemeWords};
 use crate::error::CommandError;
 use crate::numbers::number;
+use crate::state::find_scheme;
 
 /// Reads words against the scheme's list. A key that comes twice counts the last time.
 pub(crate) fn read(info: &'static Info, words: &[(String, String)]) -> Result<Params, CommandError> {
@@ -62,6 +63,12 @@ pub(crate) fn fairing(iterations: i32, words: &[(String, String)]) -> Result<Fai
     Ok(Fairing { at, iterations })
 }
 
+/// A scheme by its id, with what follows that in a command.
+pub(crate) fn scheme(id: &str, words: &[(String, String)]) -> Result<Run, CommandError> {
+    let scheme = find_scheme(id)?;
+    Ok(Run { from: 0, scheme, params: read(&scheme.info, words)? })
+}
+
 /// The words for what was set.
 fn write(info: &Info, params: &Params) -> Vec<(String, String)> {
     let set = info.params.iter().enumerate().filter_map(|(at, p)| Some((p, params.get(at)?)));
@@ -75,12 +82,16 @@ pub fn command(plan: &Plan) -> Command {
 
 /// The command that lets a scheme take over, parameters and all.
 pub(crate) fn run_command(run: &Run) -> Command {
-    let info = &run.scheme.info;
-    let mut parameters = write(info, &run.params);
+    let SchemeWords { id, mut parameters } = words(run);
     if run.from > 0 {
         parameters.insert(0, ("from".to_owned(), run.from.to_string()));
     }
-    Command::Scheme { id: info.id.to_owned(), parameters }
+    Command::Scheme { id, parameters }
+}
+
+/// A scheme with its parameters, as commands name it.
+pub fn words(run: &Run) -> SchemeWords {
+    SchemeWords { id: run.scheme.info.id.to_owned(), parameters: write(&run.scheme.info, &run.params) }
 }
 
 /// The command that sets parameter `at` of a plan's scheme and keeps the others, up to the value, which has to follow.

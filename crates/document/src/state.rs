@@ -23,6 +23,8 @@ pub(crate) struct Settings {
     pub quads: bool,
     pub scheme: &'static Entry,
     pub params: Params,
+    /// Schemes shown beside it, all different.
+    pub beside: Vec<Run>,
     /// Schemes of later steps.
     pub later: Vec<Run>,
     pub rules: Rules,
@@ -64,6 +66,7 @@ impl State {
             quads: false,
             scheme,
             params: Params::default(),
+            beside: Vec::new(),
             later: Vec::new(),
             rules: Rules::default(),
             fairings: Vec::new(),
@@ -95,12 +98,18 @@ impl State {
         Ok(())
     }
 
+    /// The mesh that a plan's first scheme takes.
+    pub fn takes(&self, plan: &Plan) -> Result<Arc<Built>, BuildError> {
+        let info = &plan.scheme.info;
+        match info.behind(&plan.params.of(info)).accepts {
+            Accepts::Triangles | Accepts::TrianglesThenQuads => self.base.triangles(&self.model),
+            Accepts::Polygons | Accepts::Both => Ok(self.base.polygons.clone()),
+        }
+    }
+
     /// Chooses the mesh that the scheme takes and checks the level against the budget.
     pub fn settle(&mut self, budget: u64) -> Result<(), CommandError> {
-        self.built = match self.settings.accepts() {
-            Accepts::Triangles | Accepts::TrianglesThenQuads => self.base.triangles(&self.model)?,
-            Accepts::Polygons | Accepts::Both => self.base.polygons.clone(),
-        };
+        self.built = self.takes(&self.plan())?;
         check(&self.built.mesh, &self.plan(), budget)?;
         Ok(())
     }
@@ -134,6 +143,12 @@ impl State {
         commands
             .extend((rules.face_varying != default.face_varying).then_some(Command::FaceVarying(rules.face_varying)));
         commands.extend(s.limit.then_some(Command::Limit(true)));
+        // What passes through the present scheme's parameters shows nothing else than that does.
+        let same = |pane: &&Run| s.later.is_empty() && **pane == plan.run(0);
+        let beside: Vec<_> = s.beside.iter().filter(|pane| !same(pane)).map(parameters::words).collect();
+        if !beside.is_empty() {
+            commands.push(Command::Compare(beside));
+        }
         commands.push(Command::Level(i32::try_from(s.level).unwrap_or(i32::MAX)));
         commands
     }

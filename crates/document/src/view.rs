@@ -89,6 +89,8 @@ pub enum ViewSet {
     Textures(bool),
     /// `colors=on|off`: vertex colours.
     Colors(bool),
+    /// `kinds=on|off`: faces coloured by what they were made from.
+    Kinds(bool),
     /// `background=theme|light|dark|transparent|RRGGBB`
     Background(Background),
     /// `hide=NAME,NAME`: the groups that are not drawn; none shows all again.
@@ -132,6 +134,7 @@ pub static VIEW_KEYS: &[ViewKey] = &[
     ViewKey { name: "two-sided", words: SWITCH, free: "", summary: "light back faces like front faces" },
     ViewKey { name: "textures", words: SWITCH, free: "", summary: "base-colour textures" },
     ViewKey { name: "colors", words: SWITCH, free: "", summary: "vertex colours" },
+    ViewKey { name: "kinds", words: SWITCH, free: "", summary: "colours by what a dual scheme made a face from" },
     ViewKey {
         name: "background",
         words: &["theme", "light", "dark", "transparent"],
@@ -208,6 +211,7 @@ impl ViewSet {
             "two-sided" => ViewSet::TwoSided(switch(value)?),
             "textures" => ViewSet::Textures(switch(value)?),
             "colors" => ViewSet::Colors(switch(value)?),
+            "kinds" => ViewSet::Kinds(switch(value)?),
             "background" => ViewSet::Background(match value {
                 "theme" => Background::Theme,
                 "light" => Background::Light,
@@ -242,6 +246,7 @@ impl ViewSet {
             ViewSet::TwoSided(_) => "two-sided",
             ViewSet::Textures(_) => "textures",
             ViewSet::Colors(_) => "colors",
+            ViewSet::Kinds(_) => "kinds",
             ViewSet::Background(_) => "background",
             ViewSet::Hide(_) => "hide",
             ViewSet::Up(_) => "up",
@@ -266,7 +271,8 @@ impl ViewSet {
             | ViewSet::Cage(on)
             | ViewSet::TwoSided(on)
             | ViewSet::Textures(on)
-            | ViewSet::Colors(on) => on_off(*on).into(),
+            | ViewSet::Colors(on)
+            | ViewSet::Kinds(on) => on_off(*on).into(),
             ViewSet::Background(background) => match background {
                 Background::Theme => "theme".into(),
                 Background::Light => "light".into(),
@@ -380,6 +386,8 @@ pub struct View {
     pub textures: bool,
     /// Vertex colours, where the model has them.
     pub colors: bool,
+    /// Faces coloured by what a dual scheme made them from.
+    pub kinds: bool,
     /// What is behind the model.
     pub background: Background,
     /// The names of the groups that are not drawn, sorted, each once.
@@ -397,6 +405,7 @@ impl Default for View {
             two_sided: true,
             textures: true,
             colors: true,
+            kinds: false,
             background: Background::Theme,
             hidden: Vec::new(),
         }
@@ -415,6 +424,7 @@ impl View {
             ViewSet::TwoSided(v) => self.two_sided = *v,
             ViewSet::Textures(v) => self.textures = *v,
             ViewSet::Colors(v) => self.colors = *v,
+            ViewSet::Kinds(v) => self.kinds = *v,
             ViewSet::Background(v) => self.background = *v,
             ViewSet::Hide(names) => self.hidden.clone_from(names),
             ViewSet::Up(v) => {
@@ -456,6 +466,7 @@ impl View {
         add(self.two_sided != plain.two_sided, ViewSet::TwoSided(self.two_sided));
         add(self.textures != plain.textures, ViewSet::Textures(self.textures));
         add(self.colors != plain.colors, ViewSet::Colors(self.colors));
+        add(self.kinds != plain.kinds, ViewSet::Kinds(self.kinds));
         add(self.background != plain.background, ViewSet::Background(self.background));
         add(!self.hidden.is_empty(), ViewSet::Hide(self.hidden.clone()));
         let camera = self.camera.quantised();

@@ -1,6 +1,6 @@
 //! The grammar: what is written is what is read, and what cannot be read is said in one sentence.
 
-use limn_document::command::{COMMANDS, Command, complete, parse_all, parse_script, spec};
+use limn_document::command::{COMMANDS, Command, SchemeWords, complete, parse_all, parse_script, spec};
 use limn_document::view::{Background, CameraSet, Edges, Shading, VIEW_KEYS};
 use limn_document::{Source, Stamp, ViewSet, camera};
 use limn_mesh::{Boundary, Weld};
@@ -167,6 +167,7 @@ fn set() -> impl Strategy<Value = ViewSet> {
         any::<bool>().prop_map(ViewSet::TwoSided),
         any::<bool>().prop_map(ViewSet::Textures),
         any::<bool>().prop_map(ViewSet::Colors),
+        any::<bool>().prop_map(ViewSet::Kinds),
         any::<[u8; 3]>().prop_map(|c| ViewSet::Background(Background::Color(c))),
         Just(ViewSet::Background(Background::Transparent)),
         proptest::collection::btree_set(any::<String>(), 0..4).prop_map(|n| ViewSet::Hide(n.into_iter().collect())),
@@ -190,7 +191,11 @@ fn command() -> impl Strategy<Value = Command> {
         Just(Command::Triangulate),
         Just(Command::Center),
         proptest::option::of(1e-30_f32..1e30).prop_map(Command::Scale),
-        ("[a-z][a-z0-9-]{0,12}", parameters).prop_map(|(id, parameters)| Command::Scheme { id, parameters }),
+        ("[a-z][a-z0-9-]{0,12}", parameters.clone()).prop_map(|(id, parameters)| Command::Scheme { id, parameters }),
+        // No scheme has the name of a command.
+        proptest::collection::vec(("[a-z][a-z0-9]{0,6}-scheme", parameters), 0..4).prop_map(|panes| {
+            Command::Compare(panes.into_iter().map(|(id, parameters)| SchemeWords { id, parameters }).collect())
+        }),
         prop_oneof![Just(Boundary::EdgeOnly), Just(Boundary::EdgeAndCorner)].prop_map(Command::Boundary),
         any::<i32>().prop_map(Command::Level),
         proptest::collection::vec(set(), 1..4).prop_map(Command::View),

@@ -2,7 +2,7 @@
 
 use super::parse::parse_words;
 use super::rows::COMMANDS;
-use super::table::{Keys, spec};
+use super::table::{Keys, Kind, spec};
 use crate::view::VIEW_KEYS;
 use crate::words;
 
@@ -51,6 +51,7 @@ pub fn complete(line: &str) -> Vec<String> {
                         }
                     }
                 }
+                None if row.keys == Keys::Schemes => found.extend(Kind::Scheme.candidates()),
                 None => {}
             }
             // Behind a whole command the next may begin.

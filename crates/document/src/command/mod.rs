@@ -36,6 +36,20 @@ use crate::words::quote;
 /// The version of the grammar.
 pub const VERSION: u32 = 1;
 
+/// A scheme and what is set of it, as words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SchemeWords {
+    /// Its id; whether there is such a scheme is the document's to say.
+    pub id: String,
+    /// What stands behind it as `key=value`, in order.
+    pub parameters: Vec<(String, String)>,
+}
+
+fn write_words(f: &mut fmt::Formatter<'_>, first: &str, parameters: &[(String, String)]) -> fmt::Result {
+    write!(f, " {first}")?;
+    parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
+}
+
 /// A command, checked in form: the arguments are of their kinds and in their ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
@@ -100,6 +114,8 @@ pub enum Command {
     TriangleRule(TriangleRule),
     /// What seams do to texture coordinates.
     FaceVarying(FaceVarying),
+    /// Show schemes beside the present one; none ends that.
+    Compare(Vec<SchemeWords>),
     /// Refine so many times.
     Level(i32),
     /// Change how the model is shown; in order, never empty.
@@ -153,6 +169,7 @@ impl Command {
             Command::Corner { .. } => "corner",
             Command::Hole(_) => "hole",
             Command::Knot { .. } => "knot",
+            Command::Compare(_) => "compare",
             Command::Boundary(_) => "boundary",
             Command::Limit(_) => "limit",
             Command::CreaseDecay(_) => "crease-decay",
@@ -186,14 +203,10 @@ impl fmt::Display for Command {
             Command::Weld(Weld::Relative(fraction)) => write!(f, " {fraction}"),
             Command::Quads(on) | Command::Limit(on) => f.write_str(if *on { " on" } else { " off" }),
             Command::Scale(Some(s)) => write!(f, " {s}"),
-            Command::Scheme { id, parameters } => {
-                write!(f, " {id}")?;
-                parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
-            }
-            Command::Fair { iterations, parameters } => {
-                write!(f, " taubin {iterations}")?;
-                parameters.iter().try_for_each(|(key, value)| write!(f, " {}", quote(&format!("{key}={value}"))))
-            }
+            Command::Scheme { id, parameters } => write_words(f, id, parameters),
+            Command::Compare(panes) if panes.is_empty() => f.write_str(" off"),
+            Command::Compare(panes) => panes.iter().try_for_each(|words| write_words(f, &words.id, &words.parameters)),
+            Command::Fair { iterations, parameters } => write_words(f, &format!("taubin {iterations}"), parameters),
             Command::Crease { place, sharpness } => {
                 match place {
                     CreaseWhere::Chain(vertices) => {

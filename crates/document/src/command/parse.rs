@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 use super::rows::COMMANDS;
 use super::table::{Keys, Parsed, Spec, spec};
-use super::{Command, table};
+use super::{Command, SchemeWords, table};
 use crate::view::{VIEW_KEYS, ViewSet};
 use crate::words::{self, WordError, shorten};
 
@@ -160,6 +160,8 @@ pub fn parse_words<S: AsRef<str>>(words: &[S]) -> Result<(Command, usize), Parse
             word.split_once('=').filter(|(key, _)| spec.keys != Keys::None && table::is_id(key))
         {
             read_key(spec, key, value, &mut parsed)?;
+        } else if spec.keys == Keys::Schemes && table::is_id(word) && table::spec(word).is_none() {
+            parsed.more.push(SchemeWords { id: word.to_owned(), parameters: Vec::new() });
         } else {
             break;
         }
@@ -192,7 +194,11 @@ fn read_key(spec: &'static Spec, key: &str, value: &str, parsed: &mut Parsed) ->
             })?;
             parsed.view.push(set);
         }
-        Keys::Parameters | Keys::None => parsed.parameters.push((key.to_owned(), value.to_owned())),
+        // To the left: of the last scheme named.
+        Keys::Parameters | Keys::Schemes | Keys::None => {
+            let list = parsed.more.last_mut().map_or(&mut parsed.parameters, |words| &mut words.parameters);
+            list.push((key.to_owned(), value.to_owned()));
+        }
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use limn_mesh::{Boundary, Decay, FaceVarying, TriangleRule};
 
 use super::table::{Class, Keys, Kind, Spec, Value, arg, maybe};
-use super::{Command, CreaseWhere};
+use super::{Command, CreaseWhere, SchemeWords};
 
 const SWITCH: Kind = Kind::Word(&["on", "off"]);
 
@@ -214,6 +214,28 @@ pub static COMMANDS: &[Spec] = &[
         example: "fair taubin 10 at=1",
         build: |p| match p.values.get(1)? {
             Value::Whole(n) => Some(Command::Fair { iterations: *n, parameters: p.parameters }),
+            _ => None,
+        },
+    },
+    Spec {
+        name: "compare",
+        class: Class::Setting,
+        args: &[arg("ID|off", Kind::Scheme)],
+        flags: &[],
+        keys: Keys::Schemes,
+        summary: "show up to three more schemes beside the present one, on the same model and level",
+        detail: "What a scheme lets one set follows its id. Choosing one of them with `scheme` makes the two change places. \
+                 `compare off` ends it; files and `info` are of the present scheme.",
+        example: "compare loop weights=warren butterfly",
+        build: |p| match p.values.into_iter().next()? {
+            Value::Text(id) if id == "off" => {
+                (p.parameters.is_empty() && p.more.is_empty()).then(|| Command::Compare(Vec::new()))
+            }
+            Value::Text(id) => {
+                let mut panes = vec![SchemeWords { id, parameters: p.parameters }];
+                panes.extend(p.more);
+                Some(Command::Compare(panes))
+            }
             _ => None,
         },
     },

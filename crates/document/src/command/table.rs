@@ -9,8 +9,8 @@ use std::fmt;
 use limn_mesh::marks::INFINITE;
 use limn_mesh::{SCHEMES, SHAPES, Weld};
 
-use super::Command;
 use super::rows::COMMANDS;
+use super::{Command, SchemeWords};
 use crate::numbers::single;
 use crate::source::Source;
 use crate::view::{VIEW_KEYS, ViewSet};
@@ -201,6 +201,8 @@ pub enum Keys {
     None,
     /// Any, from none up; the scheme says which it knows.
     Parameters,
+    /// The same, and between them the ids of more schemes.
+    Schemes,
     /// The keys of [`VIEW_KEYS`], at least one.
     View,
 }
@@ -211,6 +213,7 @@ pub struct Parsed {
     pub(super) values: Vec<Value>,
     pub(super) flags: Vec<&'static str>,
     pub(super) parameters: Vec<(String, String)>,
+    pub(super) more: Vec<SchemeWords>,
     pub(super) view: Vec<ViewSet>,
 }
 
@@ -259,6 +262,7 @@ impl Spec {
         match self.keys {
             Keys::None => {}
             Keys::Parameters => text.push_str(" [KEY=VALUE ...]"),
+            Keys::Schemes => text.push_str(" [KEY=VALUE ...] [ID ...]"),
             Keys::View => text.push_str(" KEY=VALUE ..."),
         }
         text

@@ -45,7 +45,7 @@ const INFO: Info = Info {
             key: "seed",
             name: "Seed",
             summary: "Which surface: the same number gives the same one.",
-            domain: Domain::Number { low: 0.0, high: 65535.0, default: 1.0 },
+            domain: Domain::Whole { low: 0, high: 65_535, default: 1 },
         },
         Param {
             key: "amount",
