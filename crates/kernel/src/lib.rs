@@ -13,7 +13,11 @@
 //! and draws. Dropping the run cancels it. Cost beside refining: one copy of the mesh and two of the level.
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
+mod about;
+
 use std::sync::Arc;
+
+pub use about::about;
 
 use limn_mesh::{Job, Mesh, Plan};
 #[cfg(target_arch = "wasm32")]

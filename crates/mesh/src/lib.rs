@@ -46,6 +46,7 @@ pub mod shapes;
 pub mod sink;
 pub mod soup;
 pub mod split;
+pub mod stencil;
 pub mod topology;
 mod track;
 pub mod triangulate;
