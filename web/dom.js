@@ -32,6 +32,13 @@ export function el(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Styles that come with their script; settled once they hold. @param {string} href */
+export function styles(href) {
+  return new Promise((done, fail) => {
+    document.head.append(el("link", { rel: "stylesheet", href, onload: done, onerror: fail }));
+  });
+}
+
 /**
  * Sets text only where it differs: screen readers announce writes, and layout pays for them.
  * @param {HTMLElement} element

@@ -3,7 +3,7 @@
 // Until then this module keeps what the panel would show: the last state, and the console's lines.
 
 import { toast } from "./cards.js";
-import { byId, el } from "./dom.js";
+import { byId, styles } from "./dom.js";
 
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {import("./protocol.js").Hello} Hello */
@@ -93,10 +93,7 @@ export class Drawer {
 
   async #load() {
     // Styles first: an unstyled panel is never seen.
-    const styled = new Promise((done, fail) => {
-      document.head.append(el("link", { rel: "stylesheet", href: "web/panel.css", onload: done, onerror: fail }));
-    });
-    const [{ Panel }] = await Promise.all([import("./panel.js"), styled]);
+    const [{ Panel }] = await Promise.all([import("./panel.js"), styles("web/panel.css")]);
     const panel = new Panel(this.send, this.resized, LINES);
     if (this.#hello) panel.learn(this.#hello);
     if (this.#state) panel.show(this.#state);

@@ -55,10 +55,13 @@ const size = () => {
   const [width = 1, height = 1] = (sound && exact) || near;
   // Where things will be when they have stopped sliding in: offsets know nothing of animations.
   const [dock, panel] = [byId("dock"), byId("panel")];
-  const sheet = panel.offsetWidth > box.width * 0.8;
-  const right = panel.hidden || sheet ? 0 : box.width - panel.offsetLeft;
-  const bottom = box.height - (!panel.hidden && sheet ? panel : dock).offsetTop;
-  return { width: Math.max(1, width), height: Math.max(1, height), scale, insets: [TOP, right, Math.max(0, bottom - OVERLAP), 0] };
+  const wide = (/** @type {HTMLElement} */ sheet) => sheet.offsetWidth > box.width * 0.8;
+  const right = panel.hidden || wide(panel) ? 0 : box.width - panel.offsetLeft;
+  const scheme = document.getElementById("about-scheme");
+  const left = !scheme || wide(scheme) ? 0 : scheme.offsetLeft + scheme.offsetWidth;
+  const below = [scheme, panel].find((sheet) => sheet && !sheet.hidden && wide(sheet)) ?? dock;
+  const bottom = box.height - below.offsetTop;
+  return { width: Math.max(1, width), height: Math.max(1, height), scale, insets: [TOP, right, Math.max(0, bottom - OVERLAP), left] };
 };
 
 const engine = new Supervisor(receive, size, theme);
@@ -68,6 +71,29 @@ const ruler = new Ruler((text, drag) => send(text, false, drag));
 const chrome = new Chrome(send);
 const panel = new Drawer(send, sendSize);
 const link = new Link((text) => engine.send({ type: "replay", text }));
+
+/**
+ * A part of the page that is fetched when it is first needed.
+ * @template P
+ * @param {() => Promise<P>} load
+ */
+function later(load) {
+  /** @type {Promise<P> | null} */
+  let coming = null;
+  /** At once where it is there, else when it has come; or only if it was asked for before. @param {(part: P) => void} act @param {boolean} [wanted] */
+  return (act, wanted = true) => {
+    if (!wanted && !coming) return;
+    coming ??= load();
+    coming.then(act).catch(() => {
+      coming = null;
+      cards.toast("A part of Limn could not be loaded: is the network there?");
+    });
+  };
+}
+const compare = later(async () => (await import("./compare.js")).Compare.create(send));
+const about = later(async () => (await import("./about.js")).About.create(sendSize));
+byId("compare").addEventListener("click", () => compare((part) => part.toggle(limn.state)));
+byId("about").addEventListener("click", () => about((part) => part.toggle(limn.state)));
 
 /** For the console of the browser, and for tests. */
 const limn = {
@@ -96,6 +122,8 @@ function receive(message) {
       chrome.show(message);
       panel.show(message);
       link.show(message);
+      compare((part) => part.show(message), message.compare.panes.length > 0 || message.values["kinds"] === "on");
+      about((part) => part.show(message), false);
       if (message.model || message.busy) root.dataset["state"] = message.busy ? "busy" : "ready";
       break;
     case "progress":

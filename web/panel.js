@@ -19,8 +19,10 @@ export class Panel {
   #root = byId("panel");
   #log = el("ol", { "aria-label": "Console output", "aria-live": "polite", id: "log" });
   #groups = el("fieldset", { className: "groups", hidden: true }, el("legend", {}, "Groups"));
+  #scheme = el("section", { id: "scheme" });
   #report = "";
   #hiddenGroups = "";
+  /** @type {Hello["schemes"]} */ #schemes = [];
   /** @type {string[]} */ #typed = [];
   #recalled = 0;
 
@@ -144,10 +146,10 @@ export class Panel {
         return el("fieldset", { id: `control-${control.id}`, className: control.kind, title: control.help },
           el("legend", {}, control.label), el("div", { className: "segments" }, ...buttons));
       });
-      byId(`pane-${tab}`).replaceChildren(...(tab === "view" ? [...rows, this.#groups] : [this.parameters.root, ...rows]));
+      byId(`pane-${tab}`).replaceChildren(...(tab === "view" ? [...rows, this.#groups] : [this.#scheme, this.parameters.root, ...rows]));
     }
     byId("commands").replaceChildren(...hello.commands.map((c) => el("option", { value: c.name, label: `${c.args}  ${c.help}` })));
-    this.parameters.learn(hello);
+    this.#schemes = hello.schemes;
     this.#help(hello);
   }
 
@@ -162,9 +164,19 @@ export class Panel {
         if (!row.classList.contains("actions")) setAttr(button, "aria-pressed", String(button.dataset["value"] === value));
       }
     }
+    this.#showScheme(state);
     this.parameters.show(state);
     this.#showGroups(state);
     this.#showReport(state);
+  }
+
+  /** @param {State} state */
+  #showScheme({ scheme }) {
+    if (this.#scheme.dataset["scheme"] === scheme) return;
+    this.#scheme.dataset["scheme"] = scheme;
+    const { name, summary } = this.#schemes.find(({ id }) => id === scheme) ?? { name: "", summary: "" };
+    this.#scheme.replaceChildren(el("h2", {}, name), el("p", {}, summary, " ",
+      el("button", { type: "button", className: "link", onclick: () => byId("about").click() }, "How it works")));
   }
 
   /** @param {State} state */

@@ -5,26 +5,19 @@
 import { el, setAttr, setText } from "./dom.js";
 
 /** @typedef {import("./protocol.js").State} State */
-/** @typedef {import("./protocol.js").Hello} Hello */
 /** @typedef {import("./protocol.js").Parameter} Parameter */
 
 /** About so many places a slider has. */
 const PLACES = 100;
 
 export class Parameters {
-  root = el("section", { id: "parameters", "aria-label": "Scheme", hidden: true });
-  /** @type {Hello["schemes"]} */ #schemes = [];
+  root = el("section", { id: "parameters", "aria-label": "Parameters", hidden: true });
   /** @type {((now: Parameter) => void)[]} */ #rows = [];
   #made = "";
 
   /** @param {(command: string, drag: boolean) => void} send */
   constructor(send) {
     this.send = send;
-  }
-
-  /** @param {Hello} hello */
-  learn(hello) {
-    this.#schemes = hello.schemes;
   }
 
   /** @param {State} state */
@@ -34,10 +27,9 @@ export class Parameters {
     if (made !== this.#made) {
       this.#made = made;
       const rows = state.params.map((param) => (param.kind === "choice" ? this.#choice(param) : this.#number(param)));
-      const name = this.#schemes.find(({ id }) => id === state.scheme)?.name ?? "";
       this.#rows = rows.map(({ show }) => show);
       this.root.hidden = !rows.length;
-      this.root.replaceChildren(el("h2", {}, name), ...rows.map(({ row }) => row));
+      this.root.replaceChildren(...rows.map(({ row }) => row));
     }
     state.params.forEach((param, i) => this.#rows[i]?.(param));
   }

@@ -136,6 +136,21 @@ export interface Group {
   command: string;
 }
 
+/** One of several schemes that are shown side by side. */
+export interface Pane extends Counts {
+  scheme: string;
+  /** With what was set of it. */
+  name: string;
+  /** Why nothing is shown, or what was done to the model first; may be empty. */
+  note: string;
+  /** CSS pixels: left, top, width, height. The words go to its foot. */
+  rect: [number, number, number, number];
+  /** Makes it the first; empty for the first. */
+  choose: string;
+  /** Takes it away; empty for the first. */
+  leave: string;
+}
+
 /** A parameter of the chosen scheme. */
 export interface Parameter {
   key: string;
@@ -174,6 +189,8 @@ export interface State {
   shown: Counts & { level: number; scheme: string };
   times: { read: number; refine: number; build: number; draw: number };
   busy: boolean;
+  /** Schemes side by side: none, or the present one and those beside it; `add` takes another one's id, unless it is empty. */
+  compare: { panes: Pane[]; add: string };
   values: Record<string, string>;
   /** Controls that do not apply to this model. */
   disabled: string[];
@@ -214,7 +231,7 @@ export interface Card {
 
 /** A wasm module as wasm-bindgen makes it: one of the two engines, or the kernel with every scheme. */
 export interface WasmModule {
-  default(source: { module_or_path: Response }): Promise<unknown>;
+  default(source: { module_or_path: Response | Promise<Response> }): Promise<unknown>;
   Engine: {
     create(
       canvas: OffscreenCanvas | HTMLCanvasElement,
@@ -230,6 +247,8 @@ export interface WasmModule {
     ): Promise<Engine>;
   };
   Kernel: new () => Kernel;
+  /** What is to be told of a scheme, as JSON: crates/kernel/src/about.rs. */
+  about(id: string, values: Float64Array, valence: number): string;
 }
 
 /** Refines by every scheme; only the engine calls it: crates/kernel/src/lib.rs. */

@@ -4,7 +4,7 @@
 
 use limn_document::{Command, Document, ViewSet, parameters};
 use limn_mesh::marks::INFINITE;
-use limn_mesh::{Boundary, Domain, LimitRule, Weld};
+use limn_mesh::{Boundary, Domain, Family, LimitRule, Weld};
 use serde::{Serialize, Serializer};
 
 use crate::protocol::{Parameter, ParameterChoice};
@@ -82,6 +82,7 @@ pub static CONTROLS: &[Control] = &[
     switch!("view", "two-sided", "view two-sided=", "Light both sides", "Light the backs of faces like their fronts"),
     switch!("view", "textures", "view textures=", "Textures", "Pictures on the surface, where the file has them"),
     switch!("view", "colors", "view colors=", "Vertex colours", "Colours at the vertices, where the file has them"),
+    switch!("view", "kinds", "view kinds=", "Kinds of faces", "Colour faces by what a dual scheme made them from"),
     Control {
         id: "camera",
         tab: "view",
@@ -251,6 +252,7 @@ pub fn values(document: &Document) -> Values {
         ViewSet::TwoSided(view.two_sided),
         ViewSet::Textures(view.textures),
         ViewSet::Colors(view.colors),
+        ViewSet::Kinds(view.kinds),
         ViewSet::Background(view.background),
         ViewSet::Up(view.camera.up),
         ViewSet::Projection(view.camera.projection),
@@ -334,6 +336,9 @@ pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     }
     if mesh.colors.is_empty() {
         rows.push("colors");
+    }
+    if !document.panes().iter().any(|p| p.plan.level > 0 && p.plan.scheme.info.family == Family::Dual) {
+        rows.push("kinds");
     }
     if !open {
         rows.push("boundary");
@@ -441,15 +446,22 @@ mod tests {
         document.run("open builtin:cube").unwrap();
         assert_eq!(
             disabled(&document, false),
-            ["textures", "colors", "boundary", "crease-decay", "face-varying", "quads", "triangle-rule"]
+            ["textures", "colors", "kinds", "boundary", "crease-decay", "face-varying", "quads", "triangle-rule"]
         );
         document.run("open builtin:pawn").unwrap();
-        assert_eq!(disabled(&document, true), ["textures", "colors", "crease-decay", "face-varying", "triangle-rule"]);
+        assert_eq!(
+            disabled(&document, true),
+            ["textures", "colors", "kinds", "crease-decay", "face-varying", "triangle-rule"]
+        );
         document.run("scheme linear").unwrap();
         assert!(disabled(&document, true).contains(&"limit"));
         document.run("scheme catmull-clark").unwrap();
         document.run("crease angle 30 2").unwrap();
-        assert_eq!(disabled(&document, true), ["textures", "colors", "face-varying"]);
+        assert_eq!(disabled(&document, true), ["textures", "colors", "kinds", "face-varying"]);
+        document.run("scheme doo-sabin").unwrap();
+        assert!(disabled(&document, true).contains(&"kinds"), "level 0 has no kinds");
+        document.run("level 1").unwrap();
+        assert!(!disabled(&document, true).contains(&"kinds"));
     }
 
     #[test]

@@ -79,6 +79,28 @@ impl Viewport {
         (scale, Vec2::new(middle.x, -middle.y))
     }
 
+    /// Parts of the free part, all of one size, for `count` pictures side by side (2 x 2 for four), each less `below` at its
+    /// foot for words. The way they are split leaves each the most room.
+    pub fn split(&self, count: usize, below: f32) -> Vec<Viewport> {
+        if count < 2 {
+            return vec![*self];
+        }
+        let free = self.max - self.min;
+        let columns = match count {
+            4 => 2,
+            n if free.x >= free.y => n,
+            _ => 1,
+        };
+        let rows = count.div_ceil(columns);
+        let size = free / Vec2::new(columns as f32, rows as f32);
+        let part = |i: usize| {
+            let min = self.min + size * Vec2::new((i % columns) as f32, (i / columns) as f32);
+            let max = min + size - Vec2::new(0.0, below.min(size.y * 0.4));
+            Viewport { size: self.size, min, max }
+        };
+        (0..count).map(part).collect()
+    }
+
     fn shorter(&self) -> f32 {
         (self.max - self.min).min_element()
     }
@@ -89,8 +111,8 @@ impl Viewport {
 pub struct Effect {
     /// The camera moved.
     pub moved: bool,
-    /// A double click: the pointer in -1..1 over the free part.
-    pub pivot: Option<Vec2>,
+    /// A double click: which viewport, and the pointer in -1..1 over its free part.
+    pub pivot: Option<(usize, Vec2)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,6 +133,8 @@ enum Wheel {
 pub struct Gestures {
     down: Vec<Pointer>,
     last_click: Option<(f32, Vec2)>,
+    /// The viewport in which the pointers went down.
+    pane: usize,
     wheel: Option<(Wheel, f32)>,
 }
 
@@ -120,14 +144,24 @@ impl Gestures {
         !self.down.is_empty()
     }
 
-    /// Applies a batch to the camera.
-    pub fn apply(&mut self, batch: &[f32], view: &Viewport, camera: &mut Camera, bounds: &Bounds) -> Effect {
+    /// Applies a batch to the camera that all `views` share. What begins in one of them goes on there.
+    pub fn apply(&mut self, batch: &[f32], views: &[Viewport], camera: &mut Camera, bounds: &Bounds) -> Effect {
         let mut effect = Effect::default();
+        // The words under a picture belong to it.
+        let pane = |at: Vec2| {
+            let far = |v: &Viewport| (at - at.clamp(v.min, v.max)).length_squared();
+            let near = views.iter().enumerate().min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+            near.map_or(0, |n| n.0)
+        };
         for &[kind, pointer, x, y, a, b, modifiers, time] in batch.as_chunks::<STRIDE>().0 {
             let (id, at, modifiers) = (pointer as i32, Vec2::new(x, y), modifiers as u32);
             if !at.is_finite() {
                 continue;
             }
+            if self.down.is_empty() && matches!(kind as i32, 0 | 4) {
+                self.pane = pane(at);
+            }
+            let Some(view) = views.get(self.pane).or(views.first()) else { return effect };
             match kind as i32 {
                 0 => {
                     self.down.retain(|p| p.id != id);
@@ -136,7 +170,7 @@ impl Gestures {
                         let double =
                             self.last_click.is_some_and(|(t, p)| time - t < DOUBLE.0 && p.distance(at) < DOUBLE.1);
                         if double {
-                            effect.pivot = Some(view.pointer(at));
+                            effect.pivot = Some((self.pane, view.pointer(at)));
                         }
                         self.last_click = (!double).then_some((time, at));
                     } else {
@@ -234,7 +268,7 @@ mod tests {
         let mut camera = Camera::default();
         camera.frame(&bounds, view().aspect());
         let before = camera;
-        let effect = Gestures::default().apply(batch.as_flattened(), &view(), &mut camera, &bounds);
+        let effect = Gestures::default().apply(batch.as_flattened(), &[view()], &mut camera, &bounds);
         (before, camera, effect)
     }
 
@@ -302,9 +336,53 @@ mod tests {
     fn a_double_click_asks_for_a_pivot_once() {
         let click = |t: f32, x: f32| [[0., 0., x, 250., 0., 1., 0., t], [2., 0., x, 250., 0., 0., 0., t + 50.]];
         let double = [click(0.0, 600.0), click(200.0, 602.0)].concat();
-        assert_eq!(run(&double).2.pivot, Some(view().pointer(Vec2::new(602.0, 250.0))));
+        assert_eq!(run(&double).2.pivot, Some((0, view().pointer(Vec2::new(602.0, 250.0)))));
         assert_eq!(run(&[click(0.0, 600.0), click(900.0, 600.0)].concat()).2.pivot, None);
         assert_eq!(run(&[click(0.0, 600.0), click(200.0, 500.0)].concat()).2.pivot, None);
+    }
+
+    #[test]
+    fn pictures_side_by_side_share_the_free_part() {
+        let wide = Viewport::new(Vec2::new(900.0, 600.0), [50.0, 0.0, 150.0, 0.0]);
+        let boxes = |v: &Viewport, n: usize| v.split(n, 40.0).iter().map(|p| (p.min, p.max)).collect::<Vec<_>>();
+        let at = |x0: f32, y0: f32, x1: f32, y1: f32| (Vec2::new(x0, y0), Vec2::new(x1, y1));
+        assert_eq!(wide.split(1, 40.0), [wide]);
+        assert_eq!(boxes(&wide, 2), [at(0., 50., 450., 410.), at(450., 50., 900., 410.)]);
+        assert_eq!(boxes(&wide, 3)[2], at(600., 50., 900., 410.));
+        assert_eq!(boxes(&wide, 4)[1..3], [at(450., 50., 900., 210.), at(0., 250., 450., 410.)]);
+        let tall = Viewport::new(Vec2::new(400.0, 800.0), [0.0; 4]);
+        assert_eq!(boxes(&tall, 2), [at(0., 0., 400., 360.), at(0., 400., 400., 760.)]);
+        assert_eq!(boxes(&tall, 3).len(), 3);
+    }
+
+    #[test]
+    fn a_gesture_belongs_to_the_picture_that_it_began_in() {
+        let bounds = Bounds::default();
+        let views = view().split(2, 0.0);
+        let mut start = Camera::default();
+        start.frame(&bounds, views[0].aspect());
+        let run = |batch: &[[f32; STRIDE]]| {
+            let (mut camera, mut gestures) = (start, Gestures::default());
+            let effect = gestures.apply(batch.as_flattened(), &views, &mut camera, &bounds);
+            (camera, effect)
+        };
+        // The same place in either picture does the same.
+        let wheel = |x: f32| run(&[[4., -1., x, 100., 0., -100., 0., 0.]]).0;
+        assert_eq!(wheel(100.0), wheel(500.0));
+        assert_ne!(wheel(100.0), wheel(300.0));
+        let pinch = |x: f32| {
+            run(&[
+                [0., 0., x, 250., 0., 1., 16., 0.],
+                [0., 1., x + 300., 250., 0., 1., 16., 1.],
+                [1., 1., x + 400., 250., 0., 1., 16., 3.],
+            ])
+            .0
+        };
+        // The second finger may be over the other picture.
+        assert_eq!(pinch(50.0), pinch(450.0));
+        let click = |t: f32, x: f32| [[0., 0., x, 250., 0., 1., 0., t], [2., 0., x, 250., 0., 0., 0., t + 50.]];
+        let (_, effect) = run(&[click(0.0, 500.0), click(200.0, 500.0)].concat());
+        assert_eq!(effect.pivot, Some((1, views[0].pointer(Vec2::new(100.0, 250.0)))));
     }
 
     #[test]

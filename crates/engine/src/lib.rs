@@ -16,6 +16,7 @@
 //! Everything that can be is free of the browser and tested natively: [`gestures`], [`controls`], [`keys`], [`shorthand`],
 //! [`report`], [`pick`], [`making`].
 
+pub mod compare;
 pub mod controls;
 pub mod gestures;
 pub mod keys;

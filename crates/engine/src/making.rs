@@ -111,6 +111,8 @@ impl Made {
         data.colors = &r.colors;
         data.parts = &self.parts.list;
         data.part_of = (!self.parts.of_face.is_empty()).then_some(&part_of);
+        let kind_of = |f: usize| r.kinds.get(f).map_or(0, |kind| *kind as u32 + 1);
+        data.kind_of = (!r.kinds.is_empty()).then_some(&kind_of);
         data.triangulate = triangulate;
         data.force_corners = self.corners;
         with(&data)

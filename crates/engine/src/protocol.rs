@@ -166,6 +166,35 @@ pub struct Shown {
     pub scheme: &'static str,
 }
 
+/// One of several schemes that are shown side by side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pane {
+    /// The scheme's id.
+    pub scheme: &'static str,
+    /// What people read: its name, and what was set of it.
+    pub name: String,
+    /// What is shown; zeros while there is nothing yet.
+    #[serde(flatten)]
+    pub count: Count,
+    /// Why nothing is shown, or what was done to the model first; may be empty.
+    pub note: String,
+    /// Its part of the page in CSS pixels: left, top, width, height. The words go to its foot.
+    pub rect: [f32; 4],
+    /// What makes it the first; empty for the first.
+    pub choose: String,
+    /// What takes it away; empty for the first.
+    pub leave: String,
+}
+
+/// Schemes side by side.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Compare {
+    /// The present scheme and those beside it; none if there are none beside it.
+    pub panes: Vec<Pane>,
+    /// What puts another scheme beside them once its id is appended; empty if there is no room.
+    pub add: String,
+}
+
 /// Milliseconds of the last time each was done.
 #[derive(Clone, Copy, Default, Serialize)]
 pub struct Times {
@@ -257,6 +286,8 @@ pub struct State {
     pub times: Times,
     /// Whether work goes on.
     pub busy: bool,
+    /// Schemes side by side.
+    pub compare: Compare,
     /// The chosen value of each control.
     pub values: crate::controls::Values,
     /// Controls that do not apply.

@@ -40,6 +40,7 @@ pub fn expand(text: &str, document: &Document) -> Option<Short> {
                 "two-sided" => on(view.two_sided),
                 "textures" => on(view.textures),
                 "colors" => on(view.colors),
+                "kinds" => on(view.kinds),
                 "shading" => match view.shading {
                     Shading::Smooth => "flat",
                     Shading::Flat => "smooth",

@@ -5,6 +5,7 @@
 //! compares what is wanted with what is shown and with what is being made.
 
 mod open;
+mod panes;
 mod show;
 mod work;
 
@@ -15,7 +16,7 @@ use limn_document::camera::Camera;
 use limn_document::command::{COMMANDS, Command};
 use limn_document::{Bounds, CommandError, Document, Outcome};
 use limn_formats::parcel::Parcel;
-use limn_mesh::{Mesh, SCHEMES, SHAPES};
+use limn_mesh::{Mesh, Plan, SCHEMES, SHAPES};
 use limn_render::{Gpu, Renderer, Screen, Tier};
 use wasm_bindgen::prelude::*;
 
@@ -76,7 +77,9 @@ pub struct Engine {
     screen: Screen,
     document: Document,
     gestures: Gestures,
+    /// The free part of the canvas, and the parts of it that pictures side by side have: one at least.
     viewport: Viewport,
+    views: Vec<Viewport>,
     pixel_ratio: f32,
     dark: bool,
     calm: bool,
@@ -88,15 +91,20 @@ pub struct Engine {
     turn: u32,
     known: Option<Known>,
     making: Option<Making>,
+    /// The pane that is being made, or waits for a module.
+    pane: usize,
     /// The module with every scheme, once it is loaded, and whether what is to be made waits for it.
     kernel: Option<Remote>,
     wants_kernel: bool,
     shown: Option<Made>,
+    /// What is shown in the panes beside the first.
+    beside: Vec<Option<Made>>,
+    /// Panes that are left alone until the next command, and why.
+    skipped: Vec<(Plan, String)>,
     /// The model whose materials and pictures are on the GPU, and the turn in which its pictures are decoded.
     painted: Option<(Arc<limn_formats::Model>, u32)>,
-    /// The mesh whose cage is on the GPU, and the level whose points are.
+    /// The mesh whose cage is on the GPU.
     caged: Option<Arc<Mesh>>,
-    dotted: Option<Arc<limn_mesh::Refined>>,
     /// A file to write once the level is there.
     export: Option<String>,
     times: Times,
@@ -144,6 +152,7 @@ impl Engine {
             document: Document::new(budget),
             gestures: Gestures::default(),
             viewport: Viewport::new(Vec2::ONE, [0.0; 4]),
+            views: vec![Viewport::new(Vec2::ONE, [0.0; 4])],
             pixel_ratio: 1.0,
             dark: theme == "dark",
             calm,
@@ -154,12 +163,14 @@ impl Engine {
             turn: 0,
             known: None,
             making: None,
+            pane: 0,
             kernel: None,
             wants_kernel: false,
             shown: None,
+            beside: Vec::new(),
+            skipped: Vec::new(),
             painted: None,
             caged: None,
-            dotted: None,
             export: None,
             times: Times::default(),
             since: 0.0,
@@ -272,16 +283,17 @@ impl Engine {
 
     /// Takes a frame's pointer and wheel events; see [`crate::gestures`].
     pub fn input(&mut self, batch: &[f32]) {
-        let (bounds, viewport) = (self.bounds(), self.viewport);
+        let bounds = self.bounds();
         self.finish_tween();
         let held = self.gestures.held();
-        let effect = self.gestures.apply(batch, &viewport, &mut self.document.view_mut().camera, &bounds);
+        let effect = self.gestures.apply(batch, &self.views, &mut self.document.view_mut().camera, &bounds);
         self.dirty.picture |= effect.moved;
         // Released, the camera comes to rest.
         self.dirty.camera |= effect.moved || held && !self.gestures.held();
-        if let (Some(pointer), Some(made)) = (effect.pivot, &self.shown) {
+        let hit = effect.pivot.and_then(|(pane, pointer)| Some((pointer, self.made(pane)?)));
+        if let Some((pointer, made)) = hit {
             let mut camera = self.document.view().camera;
-            let ray = camera.ray(pointer, viewport.aspect());
+            let ray = camera.ray(pointer, self.document.aspect());
             let hidden = self.hidden_groups();
             let visible = |f: u32| {
                 let group = made.parts.group(made.refined.face_source(f));
@@ -407,8 +419,12 @@ impl Engine {
                 }
                 self.sync();
             }
-            Outcome::Refine => self.sync(),
+            Outcome::Refine => {
+                self.skipped.clear();
+                self.sync();
+            }
             Outcome::Model => {
+                self.skipped.clear();
                 self.tween = None;
                 self.sync();
                 self.report_card();
@@ -416,7 +432,7 @@ impl Engine {
             Outcome::Open(source) => self.fetch_source(source),
             Outcome::Export { file } => self.start_export(file),
             Outcome::Info { json } => {
-                let points = self.shown.as_ref().filter(|_| self.making.is_none()).map(|m| &m.refined.points[..]);
+                let points = self.shown.as_ref().filter(|_| !self.making_first()).map(|m| &m.refined.points[..]);
                 answer = self
                     .document
                     .info(points)
@@ -473,14 +489,7 @@ impl Engine {
 
     fn take_viewport(&mut self, viewport: Viewport) {
         self.viewport = viewport;
-        self.document.set_aspect(viewport.aspect());
-    }
-
-    /// Which of the model's groups are not drawn, by number.
-    fn hidden_groups(&self) -> Vec<bool> {
-        let view = self.document.view();
-        let groups = self.document.model().map_or(&[][..], |m| &m.groups);
-        if view.hidden.is_empty() { Vec::new() } else { groups.iter().map(|g| view.hides(g)).collect() }
+        self.divide();
     }
 
     /// Whether a command line opens something, for logs.

@@ -79,7 +79,7 @@ impl Engine {
 
     fn replay_into_new(&mut self, commands: Vec<Command>, parcel: Option<Parcel>) {
         let mut document = Document::new(self.document.budget());
-        document.set_aspect(self.viewport.aspect());
+        document.set_aspect(self.document.aspect());
         self.go_on(document, &commands, parcel);
     }
 

@@ -11,13 +11,17 @@ use wasm_bindgen::JsValue;
 
 use super::Engine;
 use super::open::Opening;
+use crate::gestures::Viewport;
 use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
-use crate::{controls, report};
+use crate::{compare, controls, report};
 use limn_document::words::sentence;
 
 /// The page's grounds, top and bottom, as web/base.css has them.
 const DARK: [[f32; 3]; 2] = [[0.118, 0.129, 0.149], [0.067, 0.071, 0.082]];
 const LIGHT: [[f32; 3]; 2] = [[0.973, 0.969, 0.957], [0.894, 0.886, 0.867]];
+/// Faces made from a face, an edge, a vertex: three of Okabe and Ito's colours for all eyes, as web/compare.css has them.
+const DARK_KINDS: [[f32; 3]; 3] = [[0.949, 0.722, 0.294], [0.424, 0.722, 0.933], [0.184, 0.659, 0.510]];
+const LIGHT_KINDS: [[f32; 3]; 3] = [[0.910, 0.639, 0.090], [0.180, 0.525, 0.784], [0.039, 0.478, 0.361]];
 /// State messages that tell of the camera alone are at least so many milliseconds apart.
 const CAMERA_PAUSE: f64 = 200.0;
 
@@ -78,8 +82,11 @@ impl Engine {
         let start = self.clock.now();
         let Some(frame) = self.screen.acquire(self.renderer.gpu()) else { return false };
         let hidden = self.hidden_groups();
-        let picture = self.picture(&hidden);
-        let result = self.renderer.draw(&frame.view, frame.size, &picture);
+        let pictures: Vec<Frame<'_>> =
+            self.views.iter().enumerate().map(|(i, view)| self.picture(i, view, &hidden)).collect();
+        let part = |i| compare::clip(&self.views, i, self.pixel_ratio, frame.size);
+        let frames: Vec<_> = pictures.iter().enumerate().map(|(i, picture)| (picture, part(i))).collect();
+        let result = self.renderer.draw_panes(&frame.view, frame.size, &frames);
         self.screen.present(self.renderer.gpu(), frame);
         self.times.draw = self.clock.now() - start;
         match result {
@@ -96,8 +103,15 @@ impl Engine {
         }
     }
 
-    /// Camera and style of the present view.
-    fn picture<'a>(&self, hidden_groups: &'a [bool]) -> Frame<'a> {
+    /// Which of the model's groups are not drawn, by number.
+    pub(super) fn hidden_groups(&self) -> Vec<bool> {
+        let view = self.document.view();
+        let groups = self.document.model().map_or(&[][..], |m| &m.groups);
+        if view.hidden.is_empty() { Vec::new() } else { groups.iter().map(|g| view.hides(g)).collect() }
+    }
+
+    /// Camera and style of the present view, for what is shown in a pane that has this part of the canvas.
+    fn picture<'a>(&self, pane: usize, viewport: &Viewport, hidden_groups: &'a [bool]) -> Frame<'a> {
         let view = self.document.view();
         let mut style = if self.dark { Style::dark() } else { Style::light() };
         let ground = |[top, bottom]: [[f32; 3]; 2]| limn_render::Background::Gradient(top, bottom);
@@ -123,20 +137,31 @@ impl Engine {
         style.two_sided = view.two_sided;
         style.textures = view.textures;
         style.colors = view.colors;
+        style.kinds = view.kinds.then_some(if self.dark { DARK_KINDS } else { LIGHT_KINDS });
         // The near and far planes hold what is shown: the surface, and the cage around it.
         let mut bounds = self.document.bounds();
-        if let Some(surface) = self.renderer.surface().map(limn_render::Surface::bounds).filter(|b| !b.is_empty()) {
+        if let Some(surface) =
+            self.renderer.surface_in(pane).map(limn_render::Surface::bounds).filter(|b| !b.is_empty())
+        {
             bounds = Bounds::new(bounds.min.min(Vec3::from(surface.min)), bounds.max.max(Vec3::from(surface.max)));
         }
         let camera = &view.camera;
         let (near, far) = camera.clip_range(&bounds);
-        let (scale, offset) = self.viewport.to_canvas();
-        let proj = shift(scale, offset) * camera.projection_matrix(self.viewport.aspect(), near, far);
+        let (scale, offset) = viewport.to_canvas();
+        let proj = shift(scale, offset) * camera.projection_matrix(viewport.aspect(), near, far);
         let up = match camera.up {
             UpAxis::Y => Vec3::Y,
             UpAxis::Z => Vec3::Z,
         };
         Frame { camera: Camera { view: camera.view(), proj, up }, style, pixel_ratio: self.pixel_ratio, hidden_groups }
+    }
+
+    /// Counts of what is shown in a pane, and the bytes that it takes here and on the GPU.
+    fn count(&self, pane: usize) -> Count {
+        let Some(made) = self.made(pane) else { return Count::default() };
+        let c = made.refined.counts;
+        let gpu = self.renderer.surface_in(pane).map_or(0, limn_render::Surface::bytes);
+        Count { vertices: c.vertices, edges: c.edges, faces: c.faces, bytes: made.bytes() + gpu }
     }
 
     /// The whole view model.
@@ -156,12 +181,17 @@ impl Engine {
             },
             facts: facts.rows(document),
         });
-        let shown = self.shown.as_ref().map_or_else(Shown::default, |made| {
-            let c = made.refined.counts;
-            let gpu = self.renderer.surface().map_or(0, limn_render::Surface::bytes);
-            let count = Count { vertices: c.vertices, edges: c.edges, faces: c.faces, bytes: made.bytes() + gpu };
-            Shown { count, level: made.plan.level, scheme: made.plan.scheme.info.id }
+        let shown = self.shown.as_ref().map_or_else(Shown::default, |made| Shown {
+            count: self.count(0),
+            level: made.plan.level,
+            scheme: made.plan.scheme.info.id,
         });
+        let panes = document.panes();
+        let about = |i: usize| {
+            let plan = panes.get(i).map(|p| &p.plan);
+            let why = self.skipped.iter().find(|s| Some(&s.0) == plan).map(|s| s.1.clone());
+            (self.count(i), why)
+        };
         let stem = document.model().map_or("model", |m| m.name.as_str());
         let stem = plan.as_ref().filter(|p| p.level > 0).map_or(stem.to_owned(), |p| format!("{stem}-{}", p.level));
         let file = |ending: &str| format!("export {}", limn_document::words::quote(&format!("{stem}.{ending}")));
@@ -181,6 +211,7 @@ impl Engine {
                 || self.tween.is_some()
                 || self.making_room.is_some()
                 || self.opening.as_ref().is_some_and(Opening::comes),
+            compare: compare::compare(document, &panes, &self.views, about),
             values: controls::values(document),
             disabled: controls::disabled(document, facts.is_some_and(|f| f.stats.boundary_loops > 0)),
             groups: self.groups(),
@@ -241,7 +272,7 @@ impl Engine {
 
     /// Writes a file now, or when the level that is being made is there.
     pub(super) fn start_export(&mut self, file: String) {
-        if self.making.is_some() || self.wants_kernel {
+        if self.making_first() {
             self.export = Some(file);
         } else {
             self.write(&file);
@@ -267,7 +298,7 @@ impl Engine {
     fn write_picture(&mut self, file: &str) {
         self.finish_tween();
         let hidden = self.hidden_groups();
-        let picture = self.picture(&hidden);
+        let picture = self.picture(0, &self.viewport, &hidden);
         let [width, height] = self.screen.size();
         match self.renderer.image(&picture, width, height) {
             Ok(pixels) => {

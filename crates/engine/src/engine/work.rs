@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use limn_document::compare::Pane;
 use limn_document::parameters;
 use limn_document::view::Shading;
-use limn_mesh::{Connectivity, Job, Mesh};
+use limn_mesh::{Connectivity, Job, Mesh, predict};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::{Engine, Known};
@@ -46,60 +47,76 @@ impl Engine {
     pub(super) fn sync(&mut self) {
         self.dirty.picture = true;
         self.dirty.state = true;
-        let (Some(mesh), Some(plan)) = (self.document.mesh().cloned(), self.document.plan()) else { return };
+        let Some(mesh) = self.document.mesh().cloned() else { return };
         if self.known.as_ref().is_none_or(|k| !Arc::ptr_eq(&k.mesh, &mesh)) {
             let (facts, parts) = (Facts::of(&mesh), Arc::new(Parts::of(&self.document)));
             self.known = Some(Known { mesh: mesh.clone(), facts, parts });
         }
-        let Some(known) = &self.known else { return };
+        let Some(parts) = self.known.as_ref().map(|k| k.parts.clone()) else { return };
         self.wants_kernel = false;
-        let faces = self.document.predict(plan.level).map_or(0, |p| p.counts.faces);
-        let corners = self.document.view().shading == Shading::Flat && faces <= MOST_FLAT;
-        let shown = self.shown.as_ref().filter(|m| m.is(&mesh, &plan, corners));
-        if shown.is_some() {
-            self.making = None;
-            self.progress_over();
-            self.overlays();
-            return;
-        }
-        // A parameter's slider asks again before it can be answered. What it asked for first is made and shown, then the
-        // last: else nothing would be seen until the hand rests.
-        if self.making.as_ref().is_some_and(|m| m.is_but_for_params(&mesh, &plan, corners)) {
-            return;
-        }
-        let making = match &self.shown {
-            Some(made) if made.is(&mesh, &plan, !corners) => Ok(Making::again(made, corners)),
-            _ => {
-                if !plan.is_here(&mesh) && self.kernel.is_none() {
+        let flat = self.document.view().shading == Shading::Flat;
+        let panes: Vec<(Pane, bool)> = (self.document.panes().into_iter())
+            .map(|pane| {
+                let faces = predict(&pane.mesh, &pane.plan).ok().flatten().map_or(0, |p| p.counts.faces);
+                (pane, flat && faces <= MOST_FLAT)
+            })
+            .collect();
+        self.arrange(&panes);
+        for (i, (pane, corners)) in panes.into_iter().enumerate() {
+            let Pane { mesh, plan, budget, refused, .. } = pane;
+            let there = self.made(i).is_some_and(|m| m.is(&mesh, &plan, corners));
+            if there || i > 0 && (refused.is_some() || self.skipped.iter().any(|s| s.0 == plan)) {
+                continue;
+            }
+            // A parameter's slider asks again before it can be answered. What it asked for first is made and shown, then the
+            // last: else nothing would be seen until the hand rests.
+            if self.pane == i && self.making.as_ref().is_some_and(|m| m.is_but_for_params(&mesh, &plan, corners)) {
+                return;
+            }
+            let here = plan.is_here(&mesh);
+            let making = match self.made(i) {
+                Some(made) if made.is(&mesh, &plan, !corners) => Ok(Making::again(made, corners)),
+                _ if !here && self.kernel.is_none() => {
                     // What is shown stays until the module comes.
-                    self.making = None;
-                    self.wants_kernel = true;
+                    (self.making, self.pane, self.wants_kernel) = (None, i, true);
                     return;
                 }
-                let budget = self.document.budget();
-                let work: Result<Box<dyn Work>, String> = match &mut self.kernel {
-                    Some(kernel) if !plan.is_here(&mesh) => kernel.start(&mesh, &plan, budget),
-                    _ => Job::new(mesh.clone(), plan.clone(), budget)
-                        .map(|job| Box::new(job) as Box<dyn Work>)
-                        .map_err(|e| e.to_string()),
-                };
-                work.map(|work| Making::refine(work, mesh, plan, corners, known.parts.clone()))
-            }
-        };
-        match making {
-            Ok(making) => {
-                if self.making.is_none() {
-                    self.since = self.clock.now();
+                _ => {
+                    let work: Result<Box<dyn Work>, String> = match &mut self.kernel {
+                        Some(kernel) if !here => kernel.start(&mesh, &plan, budget),
+                        _ => Job::new(mesh.clone(), plan.clone(), budget)
+                            .map(|job| Box::new(job) as Box<dyn Work>)
+                            .map_err(|e| e.to_string()),
+                    };
+                    work.map(|work| Making::refine(work, mesh, plan.clone(), corners, parts.clone()))
                 }
-                self.making = Some(making);
+            };
+            match making {
+                Ok(making) => {
+                    if self.making.is_none() {
+                        self.since = self.clock.now();
+                    }
+                    (self.making, self.pane) = (Some(making), i);
+                    return;
+                }
+                Err(error) if i == 0 => {
+                    self.pane = 0;
+                    return self.cannot_show(&error);
+                }
+                Err(error) => self.skipped.push((plan, error)),
             }
-            Err(error) => self.cannot_show(&error),
         }
+        self.making = None;
+        self.progress_over();
+        self.overlays();
     }
 
     /// Says that the module with every scheme could not be loaded, and goes back.
     fn cannot_load(&mut self) {
         self.dirty.state = true;
+        if self.pane > 0 {
+            return self.skip("the scheme could not be loaded; check the connection and choose it again");
+        }
         let scheme = self.document.plan().map_or("", |p| p.scheme.info.name);
         let title = "A part of Limn could not be loaded".to_owned();
         let lines = vec![format!("{scheme} needs it. Check the connection and choose it again.")];
@@ -111,6 +128,9 @@ impl Engine {
         self.making = None;
         // If it was the other module that failed, it is of no more use.
         self.kernel = None;
+        if self.pane > 0 {
+            return self.skip(why);
+        }
         self.progress_over();
         let title = "This level cannot be shown".to_owned();
         self.card(Card { id: "draw", kind: "error", title, lines: vec![sentence(why)], ..Card::default() });
@@ -124,19 +144,21 @@ impl Engine {
         loop {
             match making.step(&self.renderer, || clock.now(), deadline) {
                 Ok(Step::Done(made, surface)) => {
-                    self.times.refine = making.spent[0];
-                    self.times.build = making.spent[1];
-                    self.renderer.show(Some(surface));
-                    self.shown = Some(made);
-                    self.paint();
-                    self.dirty.picture = true;
-                    self.dirty.state = true;
-                    if self.document.plan() != self.shown.as_ref().map(|m| m.plan.clone()) {
+                    self.renderer.show_in(self.pane, Some(surface));
+                    if let Some(slot) = self.pane.checked_sub(1) {
+                        if let Some(slot) = self.beside.get_mut(slot) {
+                            *slot = Some(made);
+                        }
                         return self.sync();
                     }
-                    self.overlays();
-                    self.progress_over();
-                    if let Some(file) = self.export.take() {
+                    self.times.refine = making.spent[0];
+                    self.times.build = making.spent[1];
+                    self.shown = Some(made);
+                    self.paint();
+                    self.sync();
+                    if !self.making_first()
+                        && let Some(file) = self.export.take()
+                    {
                         self.write(&file);
                     }
                     return;
@@ -166,6 +188,9 @@ impl Engine {
     /// Drops the work that is going on and makes the document what is shown again.
     pub(super) fn stop_making(&mut self) {
         self.export = None;
+        if self.pane > 0 && (self.making.is_some() || self.wants_kernel) {
+            return self.skip("it was stopped; choose a level or a scheme to try again");
+        }
         if self.making.take().is_some() | std::mem::take(&mut self.wants_kernel) {
             self.go_back();
         }
@@ -224,13 +249,11 @@ impl Engine {
                 Err(error) => self.trouble(&error.to_string()),
             }
         }
-        if let (true, Some(made)) = (points, &self.shown)
-            && self.dotted.as_ref().is_none_or(|d| !Arc::ptr_eq(d, &made.refined))
-        {
+        for pane in (0..=self.beside.len()).filter(|_| points) {
+            let Some(made) = self.made(pane).filter(|_| !self.renderer.has_points(pane)) else { continue };
             let refined = made.refined.clone();
-            match self.renderer.set_points(&refined.points) {
-                Ok(()) => self.dotted = Some(refined),
-                Err(error) => self.trouble(&error.to_string()),
+            if let Err(error) = self.renderer.set_points_in(pane, &refined.points) {
+                self.trouble(&error.to_string());
             }
         }
     }
