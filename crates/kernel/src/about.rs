@@ -29,6 +29,7 @@ pub fn about(id: &str, values: &[f64], valence: u32) -> String {
     let takes = match info.accepts {
         Accepts::Polygons | Accepts::Both => "any polygons",
         Accepts::Triangles => "triangles; other faces are cut first",
+        Accepts::TrianglesThenQuads => "triangles, which become quads; other faces are cut first",
     };
     let mut out = String::from("{\"name\":");
     for (text, next) in [
@@ -52,6 +53,7 @@ pub fn about(id: &str, values: &[f64], valence: u32) -> String {
         out.push_str(",\"range\":");
         let range = match &param.domain {
             Domain::Number { low, high, default } => format!("{low} to {high}, {default} unless set"),
+            Domain::Whole { low, high, default } => format!("{low} to {high}, {default} unless set"),
             Domain::Choice(words) => words.join(" or "),
         };
         string(&range, out);
