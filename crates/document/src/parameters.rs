@@ -137,13 +137,13 @@ mod tests {
         for (line, kept) in [
             ("scheme loop weights=warren", "scheme loop weights=warren"),
             ("scheme loop", "scheme loop"),
+            ("scheme n-way n=5", "scheme n-way n=5"),
+            ("scheme n-way n=3", "scheme n-way"),
+            ("scheme tri-to-quad average=off", "scheme tri-to-quad average=off"),
             ("scheme butterfly w=0.05", "scheme butterfly w=0.05"),
             ("scheme j-spline move=off s=1.25", "scheme j-spline s=1.25 move=off"),
             ("scheme j-spline s=0.5 move=off move=on", "scheme j-spline"),
             ("scheme butterfly w=0.01 w=0.0625", "scheme butterfly"),
-            ("scheme n-way n=5", "scheme n-way n=5"),
-            ("scheme n-way n=3", "scheme n-way"),
-            ("scheme tri-to-quad average=off", "scheme tri-to-quad average=off"),
         ] {
             document.run(line).unwrap();
             assert!(document.text().lines().any(|l| l == kept), "{line}: {}", document.text());

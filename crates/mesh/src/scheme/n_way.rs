@@ -43,6 +43,7 @@ impl Scheme for NWay {
         }],
     };
 
+    const CREASES: bool = true;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -45,6 +45,8 @@ impl Scheme for TriToQuad {
         }],
     };
 
+    const CREASES: bool = true;
+
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         let still = tags.params[0] != 0.0;
         let face_point = split.first_face_point(c);
