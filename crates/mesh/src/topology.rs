@@ -18,6 +18,7 @@
 //! [`Connectivity`] is what a scheme sees. [`Topology`] stores everything (level 0, any polygons); the implicit levels of
 //! [`crate::split`] answer most of it by arithmetic. Limit: 2^31 - 1 half-edges a level (the top bit says boundary).
 
+use crate::split::FaceShape;
 use std::ops::Range;
 
 /// The bit of a twin that says there is none.
@@ -45,6 +46,11 @@ pub(crate) fn is_rim<C: Connectivity>(c: &C, h: u32) -> bool {
 
 /// Read access to the half-edges of one level. All ids are dense and 0-based; every answer takes constant time.
 pub trait Connectivity {
+    /// What all faces look like, where the type alone says so: lets a compiler leave out what cannot be.
+    #[inline(always)]
+    fn sure_shape(&self) -> Option<FaceShape> {
+        None
+    }
     /// Number of vertices.
     fn vertices(&self) -> u32;
     /// Number of edges.

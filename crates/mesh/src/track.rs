@@ -23,7 +23,7 @@ use crate::refine::sharp_at;
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Either, Eval, Source};
 use crate::split::stored::Cut;
-use crate::split::{FaceKind, Level, QuadLevel, Split, TriangleLevel, on};
+use crate::split::{FaceKind, FaceShape, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
 
 /// Half-edges of a level between the first and the last.
@@ -71,16 +71,17 @@ impl Owned {
             let end = at.saturating_add((*quota).min(1 << 30) as u32).min(all);
             let (from, to) = ((*at).min(faces), end.min(faces));
             let (old_from, old_to) = ((*at).max(faces) - faces, end.max(faces) - faces);
+            // Without other schemes after it a scheme's own split made the parent.
             match self {
-                Owned::Quads(q) => {
+                Owned::Quads(q) if FULL || c.sure_shape() != Some(FaceShape::Triangles) => {
                     q.fill(*c, from, to);
                     q.fill_vertices(*c, old_from, old_to);
                 }
-                Owned::Triangles(t) => {
+                Owned::Triangles(t) if FULL || c.sure_shape() != Some(FaceShape::Quads) => {
                     t.fill(*c, from, to);
                     t.fill_vertices(*c, old_from, old_to);
                 }
-                Owned::Stored(_) => {}
+                _ => {}
             }
             *quota -= (end - *at) as usize;
             *at = end;

@@ -351,7 +351,9 @@ const fn entry<S: Scheme>() -> Entry {
     let record: RecordFn = if FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
     let corners = !matches!(S::INFO.family, Family::Dual | Family::MidEdge);
     let honours = Honours { creases: S::CREASES, corners };
-    Entry { info: S::INFO, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
+    // Papers are told about by the build that has their rules.
+    let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
+    Entry { info, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
 }
 
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {

@@ -181,8 +181,12 @@ impl Split {
     /// into `out` (all children's corners, `4 * H` long). Cost: about 2 ns a corner.
     pub(crate) fn corners(self, c: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
         match self {
-            Split::Quad => quad::corners(c, from, to, out),
-            Split::Triangle => triangle::corners(c, from, to, out),
+            Split::Quad if crate::FULL || c.sure_shape() != Some(FaceShape::Triangles) => {
+                quad::corners(c, from, to, out)
+            }
+            Split::Triangle if crate::FULL || c.sure_shape() != Some(FaceShape::Quads) => {
+                triangle::corners(c, from, to, out)
+            }
             _ => unreachable!("a stored split cuts a whole level at once"),
         }
     }
@@ -190,7 +194,7 @@ impl Split {
     /// The knot intervals of the next level, for splits that carry them: the dual one. `lone` is [`Split::lone`] of `c`.
     pub(crate) fn knots(self, c: &Level<'_>, knots: &[f32], lone: &[u32]) -> Vec<f32> {
         match (self, c) {
-            (Split::Dual { .. }, Level::Base(t)) => stored::dual_knots(t, knots, lone),
+            (Split::Dual { .. }, Level::Base(t)) if crate::FULL => stored::dual_knots(t, knots, lone),
             _ => Vec::new(),
         }
     }

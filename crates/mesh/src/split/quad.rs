@@ -108,6 +108,10 @@ pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut 
 
 impl Connectivity for QuadLevel {
     #[inline(always)]
+    fn sure_shape(&self) -> Option<super::FaceShape> {
+        Some(super::FaceShape::Quads)
+    }
+    #[inline(always)]
     fn vertices(&self) -> u32 {
         self.vertex_half_edge.len() as u32
     }
