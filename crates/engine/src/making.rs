@@ -105,6 +105,8 @@ impl Made {
         data.parents = match (r.parent_ranges, r.level) {
             (Some(ranges), _) => Some(ranges),
             (None, 0) => None,
+            // Quads of another split: nothing tells their corners apart.
+            (None, _) if matches!(r.faces, F::Quads(_)) => None,
             (None, _) => Some([r.vertex_parents; 2]),
         };
         data.uv = r.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
@@ -315,6 +317,32 @@ mod tests {
         assert_eq!(parts.of_face, [0, 1]);
         assert_eq!((parts.group(0), parts.group(1)), (1, 0));
         assert_eq!(Parts::of(&Document::new(1)), Parts::default());
+    }
+
+    #[test]
+    fn every_scheme_s_levels_can_be_drawn() {
+        for entry in limn_mesh::SCHEMES {
+            for (name, level) in [("cube", 1), ("cube", 2), ("pawn", 1), ("grid", 1)] {
+                let mut document = Document::new(1 << 28);
+                if document.run(&format!("open builtin:{name}")).is_err() {
+                    continue;
+                }
+                document.run(&format!("scheme {}", entry.info.id)).unwrap();
+                document.run(&format!("level {level}")).unwrap();
+                let (mesh, plan) = (document.mesh().unwrap(), document.plan().unwrap());
+                let refined = Arc::new(refine(mesh, &plan, 1 << 28).unwrap());
+                let (normals, parts) = (Arc::new(refined.normals()), Arc::new(Parts::of(&document)));
+                let made = Made { refined: refined.clone(), plan, corners: false, normals, parts };
+                made.data(|data| {
+                    let Some([faces, edges]) = data.parents.filter(|_| data.is_shared()) else { return };
+                    for f in 0..refined.faces.count() {
+                        let &[v, e, c, d] = refined.faces.face(f) else { panic!("shared faces are quads") };
+                        let born = |v: u32| (v >= faces) as u32 + (v >= edges) as u32;
+                        assert_eq!([v, e, c, d].map(born), [0, 2, 1, 2], "{}, {name}: face {f}", entry.info.id);
+                    }
+                });
+            }
+        }
     }
 
     #[test]

@@ -293,6 +293,10 @@ impl Renderer {
             }
             self.draw_pane(&mut pass, pane, draws, frame);
         }
+        // WebGL2 resolves samples by a blit, which the last pane's scissor would cut.
+        if frames.len() > 1 {
+            pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
+        }
         drop(pass);
 
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
