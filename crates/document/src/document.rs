@@ -471,35 +471,6 @@ impl Document {
         self.history.steps()
     }
 
-    /// The fewest commands that lead here from an empty document; empty without a model.
-    pub fn commands(&self) -> Vec<Command> {
-        let Some(state) = &self.state else { return Vec::new() };
-        let mut commands = state.commands();
-        let view = self.view.settings();
-        if !view.is_empty() {
-            commands.push(Command::View(view));
-        }
-        commands
-    }
-
-    /// [`Self::commands`] as a script, a line each behind the grammar's version. What crash recovery keeps.
-    pub fn text(&self) -> String {
-        let mut text = format!("version {VERSION}\n");
-        for command in self.commands() {
-            text.push_str(&command.to_string());
-            text.push('\n');
-        }
-        text
-    }
-
-    /// [`Self::commands`] as the fragment of an address, with its `#`; empty without a model.
-    pub fn link(&self) -> String {
-        if self.state.is_none() {
-            return String::new();
-        }
-        link::write(self.commands().iter().map(Command::to_string))
-    }
-
     /// Whether a command changes the document, so that text and link are worth saving after it.
     pub fn changes(command: &Command) -> bool {
         command.class() != Class::Action || matches!(command, Command::Undo | Command::Redo)

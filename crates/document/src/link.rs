@@ -18,6 +18,7 @@
 use std::fmt::Write;
 
 use crate::command::{Class, Command, ParseError, VERSION};
+use crate::document::Document;
 use crate::words::shorten;
 
 /// Why a link cannot be opened.
@@ -159,4 +160,35 @@ pub(crate) fn unescape(text: &str, plus: bool) -> Option<String> {
         });
     }
     String::from_utf8(bytes).ok()
+}
+
+impl Document {
+    /// The fewest commands that lead here from an empty document; empty without a model.
+    pub fn commands(&self) -> Vec<Command> {
+        let Some(state) = &self.state else { return Vec::new() };
+        let mut commands = state.commands();
+        let view = self.view().settings();
+        if !view.is_empty() {
+            commands.push(Command::View(view));
+        }
+        commands
+    }
+
+    /// [`Self::commands`] as a script, a line each behind the grammar's version. What crash recovery keeps.
+    pub fn text(&self) -> String {
+        let mut text = format!("version {VERSION}\n");
+        for command in self.commands() {
+            text.push_str(&command.to_string());
+            text.push('\n');
+        }
+        text
+    }
+
+    /// [`Self::commands`] as the fragment of an address, with its `#`; empty without a model.
+    pub fn link(&self) -> String {
+        if self.state.is_none() {
+            return String::new();
+        }
+        write(self.commands().iter().map(Command::to_string))
+    }
 }

@@ -50,6 +50,7 @@ pub mod stencil;
 pub mod topology;
 mod track;
 pub mod triangulate;
+mod validate;
 mod weld;
 mod wire;
 

@@ -230,7 +230,7 @@ impl Patch {
         let outward = |k: u32| {
             let (a, b) = (on(k, 1.0), on(k + 1, 1.0));
             let d = [a[0] + b[0] - 2.0 * middle[0], a[1] + b[1] - 2.0 * middle[1]];
-            let length = d[0].hypot(d[1]);
+            let length = libm::hypot(d[0], d[1]);
             d.map(|x| x / length)
         };
         // Of each corner: outward across the edge after it and the edge before it, and the tip between the two.
