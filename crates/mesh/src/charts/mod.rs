@@ -23,7 +23,7 @@
 //! ```
 //!
 //! Every place is a mix of coordinates of one chart: nothing bleeds. Equal places of one vertex have equal bits: no cracks.
-//! Cost: about 200 ns a corner, in one call a level. Limit: beside a seam a texture is stretched over
+//! Cost: linear, in one call a level. Limit: beside a seam a texture is stretched over
 //! half a face of the other side; a triangle whose three edges are seams, all given away, shows a third less of its texture.
 //! From the second step on mid-edge, whose faces meet in points, may pinch a chart apart there; then textures
 //! do not fit along the pinch, though every face still lies in its chart.

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Around the outermost ring the patch ends as if the mesh did. What is read off a patch must keep a ring away from there.
-//! Cost: some 10 ns a corner to recognise one, 100 to make a mesh of it. Memory: 4 bytes for each vertex and face of the
+//! Cost: linear in corners. Memory: 4 bytes for each vertex and face of the
 //! level, once.
 
 use crate::connect::UNMATCHED;

@@ -14,7 +14,7 @@
 //!
 //! Creases are followed as far as the scheme follows them, and displaced. The boundary stays the scheme's own curve:
 //! neighbours along it fit, and so do the sheets at a cut edge. Colours and texture coordinates are not displaced. Not affine
-//! invariant, and other numbers of vertices give another surface. Cost: the scheme's, and about 10 ns a new point.
+//! invariant, and other numbers of vertices give another surface. Cost: the scheme's, and one hash a new point.
 
 use super::{Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Scheme, Tags, entry};
 use crate::limit::LimitRule;

@@ -19,7 +19,7 @@
 //! its boundary edge: p + q - r. (The weights of one and two edges are those that OpenMesh states. Its figures agree where
 //! they do not depend on where a face's list of vertices begins: not in triangles with two boundary edges.)
 //!
-//! C1. Cost: about 90 ns an output face. Limit: like every interpolating scheme it ripples where a mesh is not smooth.
+//! C1. Cost: linear; wider stencils than sqrt3. Limit: like every interpolating scheme it ripples where a mesh is not smooth.
 
 use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};

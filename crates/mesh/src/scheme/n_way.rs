@@ -13,7 +13,7 @@
 //! middle). Points of the grid lie on them at multiples of 2/n, so a quad is one bilinear patch at multiples of 1/n, a planar
 //! polygon stays in its plane, and edges are cut alike from both sides.
 //!
-//! Cost: about 30 ns an output face. Limit: it never smooths; n is at most 16.
+//! Cost: linear, as the other stored splits. Limit: it never smooths; n is at most 16.
 
 use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
 use crate::limit::LimitRule;

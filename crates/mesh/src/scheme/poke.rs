@@ -9,7 +9,7 @@
 //! ```
 //!
 //! What was not a triangle is one after the first step, on any polygons: the plainest way to a scheme that takes triangles only.
-//! Cost: about 30 ns an output face. Limit: angles shrink with every level, it never smooths, and rims stay as coarse as they are.
+//! Cost: linear, as the other stored splits. Limit: angles shrink with every level, it never smooths, and rims stay as coarse as they are.
 
 use super::{Accepts, Family, Info, Scheme, Tags, face_centroids};
 use crate::limit::LimitRule;
