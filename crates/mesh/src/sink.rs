@@ -25,6 +25,14 @@ pub trait Row {
     /// Moves a point by `offset`, whatever the weights; what is no point (colours, texture coordinates) stays. The last
     /// thing that a rule says.
     fn constant(&mut self, offset: [f64; 3]);
+    /// Lets `state` state the row, or go on with it, out of line: on a copy, so that a sum whose address nobody else has
+    /// stays in registers.
+    fn apart(&mut self, state: impl FnOnce(&mut Self))
+    where
+        Self: Sized,
+    {
+        state(self);
+    }
 }
 
 /// Takes rows, pass by pass.
@@ -99,6 +107,12 @@ pub struct Sum<'r> {
 }
 
 impl Row for Sum<'_> {
+    #[inline(always)]
+    fn apart(&mut self, state: impl FnOnce(&mut Self)) {
+        let mut copy = Sum { old: self.old, new: self.new, sum: self.sum };
+        state(&mut copy);
+        self.sum = copy.sum;
+    }
     #[inline(always)]
     fn vertex(&mut self, v: u32, weight: f64) {
         let (p, w) = (self.old[v as usize], weight as f32);

@@ -51,7 +51,7 @@ impl Scheme for CatmullClark {
         let smooth_triangles = tags.rules.triangle == TriangleRule::Smooth;
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            edge_point(c, (e, h), tags, row, |row| {
+            edge_point(c, (e, h), &tags, row, |row| {
                 let (f, g) = (c.face(h), c.face(c.twin(h)));
                 row.vertex(c.origin(h), 1.0);
                 row.vertex(c.origin(c.next(h)), 1.0);
@@ -68,7 +68,7 @@ impl Scheme for CatmullClark {
             });
         });
         sink.pass(0, c.vertices(), |v, row| {
-            vertex_point(c, v, tags, row, |row| {
+            vertex_point(c, v, &tags, row, |row| {
                 let mut n = 0u32;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);

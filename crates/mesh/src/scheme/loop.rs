@@ -73,7 +73,7 @@ impl Scheme for Loop {
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            edge_point(c, (e, h), tags, row, |row| {
+            edge_point(c, (e, h), &tags, row, |row| {
                 row.vertex(c.origin(h), 0.375);
                 row.vertex(c.origin(c.next(h)), 0.375);
                 row.vertex(c.origin(c.prev(h)), 0.125);
@@ -81,7 +81,7 @@ impl Scheme for Loop {
             });
         });
         sink.pass(0, c.vertices(), |v, row| {
-            vertex_point(c, v, tags, row, |row| {
+            vertex_point(c, v, &tags, row, |row| {
                 let mut n = 0u32;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);

@@ -445,7 +445,7 @@ fn face_centroids<C: Connectivity, K: Sink>(c: &C, split: Split, sink: &mut K) {
 /// neighbour along it. Neighbours first: their sum does not depend on the side, so copies of a split vertex stay equal.
 /// Cost: the valence on a boundary, one step elsewhere.
 #[inline(always)]
-fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: Tags<'_>, row: &mut impl Row) -> bool {
+fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>, row: &mut impl Row) -> bool {
     if tags.is_sharp(c, v) {
         row.vertex(v, 1.0);
         return true;
@@ -464,9 +464,9 @@ fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: Tags<'_>, row: &mut impl 
 
 /// States the rule of `v` with its marks; `smooth` states the scheme's own, of inner vertices.
 #[inline(always)]
-fn vertex_point<C: Connectivity, R: Row>(c: &C, v: u32, tags: Tags<'_>, row: &mut R, smooth: impl Fn(&mut R)) {
+fn vertex_point<C: Connectivity, R: Row>(c: &C, v: u32, tags: &Tags<'_>, row: &mut R, smooth: impl Fn(&mut R)) {
     match tags.creases {
-        Some(creases) if FULL && creases.marked(v) => crease::vertex_point(c, v, &tags, row, smooth),
+        Some(creases) if FULL && creases.marked(v) => row.apart(|row| crease::vertex_point(c, v, tags, row, smooth)),
         _ if kept_or_curve(c, v, tags, row) => {}
         _ => smooth(row),
     }
@@ -478,7 +478,7 @@ fn vertex_point<C: Connectivity, R: Row>(c: &C, v: u32, tags: Tags<'_>, row: &mu
 fn edge_point<C: Connectivity, R: Row>(
     c: &C,
     (e, h): (u32, u32),
-    tags: Tags<'_>,
+    tags: &Tags<'_>,
     row: &mut R,
     smooth: impl Fn(&mut R),
 ) {
@@ -486,7 +486,7 @@ fn edge_point<C: Connectivity, R: Row>(
         row.vertex(c.origin(h), 0.5);
         row.vertex(c.origin(c.next(h)), 0.5);
     } else if FULL && tags.creases.is_some_and(|creases| creases.edge(e) > 0.0) {
-        crease::edge_point(c, h, &tags, row, smooth);
+        row.apart(|row| crease::edge_point(c, h, tags, row, smooth));
     } else {
         smooth(row);
     }

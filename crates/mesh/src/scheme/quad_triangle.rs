@@ -76,7 +76,7 @@ impl Scheme for QuadTriangle {
         sink.pass(c.vertices(), pointed.len() as u32, |i, row| centroid(c, pointed[i as usize], 1.0, row));
         sink.pass(c.vertices() + pointed.len() as u32, c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
-            edge_point(c, (e, h), tags, row, |row| {
+            edge_point(c, (e, h), &tags, row, |row| {
                 for side in [h, c.twin(h)] {
                     if is_triangle(c, side) {
                         row.pair(c.origin(h), c.origin(c.next(h)), 3.0 / 16.0);
@@ -89,7 +89,7 @@ impl Scheme for QuadTriangle {
             });
         });
         sink.pass(0, c.vertices(), |v, row| {
-            vertex_point(c, v, tags, row, |row| own_rule(c, v, row));
+            vertex_point(c, v, &tags, row, |row| own_rule(c, v, row));
         });
     }
 }

@@ -57,7 +57,7 @@ impl Scheme for TriToQuad {
             if still {
                 return row.pair(a, b, 0.5);
             }
-            edge_point(c, (e, h), tags, row, |row| {
+            edge_point(c, (e, h), &tags, row, |row| {
                 row.pair(a, b, 0.25);
                 for h in [h, c.twin(h)] {
                     row.child(face_point + c.face(h), 0.125);
@@ -71,7 +71,7 @@ impl Scheme for TriToQuad {
             if still {
                 return row.vertex(v, 1.0);
             }
-            vertex_point(c, v, tags, row, |row| {
+            vertex_point(c, v, &tags, row, |row| {
                 let mut n = 0.0;
                 c.turn(v, |h| {
                     row.vertex(c.origin(c.next(h)), 1.0);
