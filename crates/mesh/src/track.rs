@@ -402,7 +402,7 @@ impl Track {
             }
             Stage::Corners(at) => {
                 on!(level, c => {
-                    zeroed(&mut self.corners, 4 * c.half_edges() as usize);
+                    room(&mut self.corners, 4 * c.half_edges() as usize);
                     let end = at.saturating_add((*quota).min(1 << 30) as u32).min(c.faces());
                     split.corners(*c, *at, end, &mut self.corners);
                     *quota -= (end - *at) as usize;
@@ -468,6 +468,11 @@ impl Track {
         }
         self.wide = std::mem::take(&mut self.new_wide);
     }
+}
+
+/// Makes room for that many in `buffer`.
+fn room<T>(buffer: &mut Vec<T>, length: usize) {
+    buffer.reserve_exact(length - buffer.len());
 }
 
 /// Makes `buffer` of that length, if it is not yet. Asking for zeroed memory beats writing zeros: fresh pages have them.

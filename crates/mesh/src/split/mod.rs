@@ -177,9 +177,9 @@ impl Split {
         }
     }
 
-    /// The corners of the child faces, for a level that is only shown. Writes the children of parent faces `from..to`
-    /// into `out` (all children's corners, `4 * H` long). Cost: about 2 ns a corner.
-    pub(crate) fn corners(self, c: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
+    /// The corners of the child faces, for a level that is only shown. Appends the children of parent faces `from..to`
+    /// to `out`, where those of the faces before are (all have `4 * H` corners). Cost: about 2 ns a corner.
+    pub(crate) fn corners(self, c: &impl Connectivity, from: u32, to: u32, out: &mut Vec<u32>) {
         match self {
             Split::Quad if crate::FULL || c.sure_shape() != Some(FaceShape::Triangles) => {
                 quad::corners(c, from, to, out)

@@ -28,15 +28,15 @@ impl QuadLevel {
     pub fn below(parent: &impl Connectivity) -> Self {
         let half_edges = parent.half_edges() as usize * 4;
         QuadLevel {
-            twin: vec![0; half_edges],
-            origin: vec![0; half_edges],
+            twin: Vec::with_capacity(half_edges),
+            origin: Vec::with_capacity(half_edges),
             vertex_half_edge: vec![0; super::Split::Quad.children(parent) as usize],
             boundary: vec![0; parent.boundary_half_edges() as usize * 2],
             edges: 2 * parent.edges() + parent.half_edges(),
         }
     }
 
-    /// Fills the children of the parent's faces `from..to`.
+    /// Appends the children of the parent's faces `from..to`, where those of the faces before are.
     pub fn fill(&mut self, parent: &impl Connectivity, from: u32, to: u32) {
         corners(parent, from, to, &mut self.origin);
         let first_edge = super::Split::Quad.first_edge_point(parent) as usize;
@@ -47,9 +47,7 @@ impl QuadLevel {
             for h in face.clone() {
                 let n = if h + 1 == face.end { face.start } else { h + 1 };
                 let t = parent.twin(h);
-                let child = &mut self.twin[4 * h as usize..4 * h as usize + 4];
-                child[1] = 4 * n + 2;
-                child[2] = 4 * p + 1;
+                let mut child = [0, 4 * n + 2, 4 * p + 1, 0];
                 if is_boundary(t) {
                     let r = boundary_rank(t);
                     child[0] = !(2 * r);
@@ -64,6 +62,7 @@ impl QuadLevel {
                 } else {
                     child[3] = 4 * twin_p;
                 }
+                self.twin.extend_from_slice(&child);
                 // A boundary's outgoing half-edge at the edge point is the second half of the edge.
                 if is_boundary(t) {
                     self.vertex_half_edge[first_edge + parent.edge(h) as usize] = 4 * n + 3;
@@ -92,7 +91,7 @@ impl QuadLevel {
 
 /// See [`super::Split::corners`].
 #[inline(always)]
-pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
+pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut Vec<u32>) {
     let face_point = super::Split::Quad.first_face_point(parent);
     let edge_point = super::Split::Quad.first_edge_point(parent);
     for f in from..to {
@@ -100,7 +99,7 @@ pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut 
         let mut before = edge_point + parent.edge(face.end - 1);
         for h in face {
             let after = edge_point + parent.edge(h);
-            out[4 * h as usize..4 * h as usize + 4].copy_from_slice(&[parent.origin(h), after, face_point + f, before]);
+            out.extend_from_slice(&[parent.origin(h), after, face_point + f, before]);
             before = after;
         }
     }

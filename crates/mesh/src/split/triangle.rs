@@ -31,8 +31,8 @@ impl TriangleLevel {
         debug_assert_eq!(parent.half_edges(), 3 * parent.faces());
         let half_edges = parent.half_edges() as usize * 4;
         TriangleLevel {
-            twin: vec![0; half_edges],
-            origin: vec![0; half_edges],
+            twin: Vec::with_capacity(half_edges),
+            origin: Vec::with_capacity(half_edges),
             vertex_half_edge: vec![0; super::Split::Triangle.children(parent) as usize],
             boundary: vec![0; parent.boundary_half_edges() as usize * 2],
             edges: 2 * parent.edges() + parent.half_edges(),
@@ -40,7 +40,8 @@ impl TriangleLevel {
         }
     }
 
-    /// Fills the children of the parent's faces `from..to`.
+    /// Appends the children of the parent's faces `from..to`, where those of the faces before are; behind the last face the
+    /// triangles in the middle.
     pub fn fill(&mut self, parent: &impl Connectivity, from: u32, to: u32) {
         corners(parent, from, to, &mut self.origin);
         let first_edge = super::Split::Triangle.first_edge_point(parent) as usize;
@@ -51,8 +52,7 @@ impl TriangleLevel {
             for h in face.clone() {
                 let n = if h + 1 == face.end { face.start } else { h + 1 };
                 let t = parent.twin(h);
-                let child = &mut self.twin[3 * h as usize..3 * h as usize + 3];
-                child[1] = middle + h;
+                let mut child = [0, middle + h, 0];
                 if is_boundary(t) {
                     let r = boundary_rank(t);
                     child[0] = !(2 * r);
@@ -71,9 +71,12 @@ impl TriangleLevel {
                 } else {
                     child[2] = 3 * twin_p;
                 }
-                self.twin[(middle + h) as usize] = 3 * h + 1;
+                self.twin.extend_from_slice(&child);
                 twin_p = t;
             }
+        }
+        if from < to && to == parent.faces() {
+            self.twin.extend((0..parent.half_edges()).map(|h| 3 * h + 1));
         }
     }
 
@@ -92,18 +95,20 @@ impl TriangleLevel {
 
 /// See [`super::Split::corners`].
 #[inline(always)]
-pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut [u32]) {
+pub(super) fn corners(parent: &impl Connectivity, from: u32, to: u32, out: &mut Vec<u32>) {
     let edge_point = super::Split::Triangle.first_edge_point(parent);
-    let middle = 3 * parent.half_edges();
     for f in from..to {
         let face = parent.face_half_edges(f);
         let mut before = edge_point + parent.edge(face.end - 1);
         for h in face {
             let after = edge_point + parent.edge(h);
-            out[3 * h as usize..3 * h as usize + 3].copy_from_slice(&[parent.origin(h), after, before]);
-            out[(middle + h) as usize] = before;
+            out.extend_from_slice(&[parent.origin(h), after, before]);
             before = after;
         }
+    }
+    if from < to && to == parent.faces() {
+        // A middle triangle's corner h lies where the triangle at h has its last.
+        (0..parent.half_edges() as usize).for_each(|h| out.push(out[3 * h + 2]));
     }
 }
 
