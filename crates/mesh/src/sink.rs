@@ -194,11 +194,6 @@ pub struct Entries {
 }
 
 impl Entries {
-    #[inline(never)]
-    fn push(&mut self, source: Source, weight: f64) {
-        self.weights.push((source, weight));
-    }
-
     fn clear(&mut self) {
         self.weights.clear();
         self.offset = [0.0; 3];
@@ -220,95 +215,6 @@ impl Row for Entries {
     }
     fn constant(&mut self, offset: [f64; 3]) {
         self.offset = offset;
-    }
-}
-
-/// Either of the two, decided while it runs: one compilation of the rules instead of two, for schemes that are chosen less
-/// often. A branch a term.
-pub enum Either<'e, 'a> {
-    /// Computes.
-    Eval(&'e mut Eval<'a>),
-    /// Hands out rows.
-    Record(&'e mut Record<'a>),
-}
-
-/// A row of [`Either`].
-#[derive(Debug)]
-pub enum EitherRow<'r> {
-    /// Of [`Eval`].
-    Sum(Sum<'r>),
-    /// Of [`Record`].
-    Entries(Entries),
-}
-
-impl Row for EitherRow<'_> {
-    #[inline(always)]
-    fn vertex(&mut self, v: u32, weight: f64) {
-        match self {
-            EitherRow::Sum(sum) => sum.vertex(v, weight),
-            EitherRow::Entries(entries) => entries.push(Source::Vertex(v), weight),
-        }
-    }
-    #[inline(always)]
-    fn pair(&mut self, a: u32, b: u32, weight: f64) {
-        match self {
-            EitherRow::Sum(sum) => sum.pair(a, b, weight),
-            EitherRow::Entries(entries) => {
-                entries.push(Source::Vertex(a), weight);
-                entries.push(Source::Vertex(b), weight);
-            }
-        }
-    }
-    #[inline(always)]
-    fn child(&mut self, c: u32, weight: f64) {
-        match self {
-            EitherRow::Sum(sum) => sum.child(c, weight),
-            EitherRow::Entries(entries) => entries.push(Source::Child(c), weight),
-        }
-    }
-    #[inline(always)]
-    fn scale(&mut self, factor: f64) {
-        match self {
-            EitherRow::Sum(sum) => sum.scale(factor),
-            EitherRow::Entries(entries) => entries.scale(factor),
-        }
-    }
-    #[inline(always)]
-    fn constant(&mut self, offset: [f64; 3]) {
-        match self {
-            EitherRow::Sum(sum) => sum.constant(offset),
-            EitherRow::Entries(entries) => entries.constant(offset),
-        }
-    }
-}
-
-impl Sink for Either<'_, '_> {
-    type Row<'r> = EitherRow<'r>;
-    #[inline(always)]
-    fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut EitherRow<'r>)) {
-        let rows = match self {
-            Either::Eval(eval) => eval.slice.take(count),
-            Either::Record(record) => record.slice.take(count),
-        };
-        for i in rows {
-            let mut row = match self {
-                Either::Eval(eval) => EitherRow::Sum(Sum { old: eval.old, new: eval.new, sum: [0.0; 3] }),
-                Either::Record(record) => EitherRow::Entries(std::mem::take(&mut record.row)),
-            };
-            rule(i, &mut row);
-            let (sum, entries) = match row {
-                EitherRow::Sum(sum) => (sum.sum, Entries::default()),
-                EitherRow::Entries(entries) => ([0.0; 3], entries),
-            };
-            match self {
-                Either::Eval(eval) => eval.new[(first + i) as usize] = sum,
-                Either::Record(record) => {
-                    (record.take)(first + i, &entries.weights, entries.offset);
-                    record.row = entries;
-                    record.row.clear();
-                }
-            }
-        }
     }
 }
 

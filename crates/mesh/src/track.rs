@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refine::sharp_at;
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
-use crate::sink::{Cursor, Either, Eval, Source};
+use crate::sink::{Cursor, Eval, Source};
 use crate::split::stored::Cut;
 use crate::split::{FaceKind, FaceShape, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
@@ -323,7 +323,7 @@ impl Track {
             let creases = self.creases.as_ref();
             let tags = Tags { sharp, creases, ..Tags::new(plan.rules, Default::default()) };
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
-            fairing::rules(level, *pass, tags, &mut Either::Eval(&mut sink));
+            fairing::rules(level, *pass, tags, &mut sink);
             if sink.done() {
                 std::mem::swap(old, &mut self.new_points);
                 (*pass, *cursor) = (*pass + 1, Cursor::default());

@@ -18,7 +18,7 @@
 
 use super::{Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Scheme, Tags, entry};
 use crate::limit::LimitRule;
-use crate::sink::{Either, Row, Sink};
+use crate::sink::{Row, Sink};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, is_boundary};
 
@@ -76,12 +76,12 @@ pub(super) const fn fractal() -> Entry {
         common: false,
         limit: LimitRule::Analysis,
         honours: HONOURS,
-        eval: |level, split, tags, sink| rules(level, split, tags, &mut Either::Eval(sink)),
-        record: |level, split, tags, sink| rules(level, split, tags, &mut Either::Record(sink)),
+        eval: |level, split, tags, sink| rules(level, split, tags, sink),
+        record: |level, split, tags, sink| rules(level, split, tags, sink),
     }
 }
 
-fn rules(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
+fn rules<K: Sink>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut K) {
     let [over, seed, amount] = tags.params;
     let reach = libm::scalbn(amount * tags.size, -(tags.step.min(1000) as i32));
     let key = mixed(mixed(seed.to_bits()) ^ u64::from(tags.step));
@@ -95,16 +95,16 @@ fn rules(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, 
 }
 
 /// Moves what passes through.
-struct Displaced<'d, 'l, 'e, 'a> {
+struct Displaced<'d, 'l, K> {
     level: &'d Level<'l>,
     split: Split,
     reach: f64,
     key: u64,
-    sink: &'d mut Either<'e, 'a>,
+    sink: &'d mut K,
 }
 
-impl Sink for Displaced<'_, '_, '_, '_> {
-    type Row<'r> = <Either<'static, 'static> as Sink>::Row<'r>;
+impl<K: Sink> Sink for Displaced<'_, '_, K> {
+    type Row<'r> = K::Row<'r>;
 
     fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Self::Row<'r>)) {
         let (c, reach, key) = (self.level, self.reach, self.key);

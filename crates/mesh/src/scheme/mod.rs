@@ -53,7 +53,7 @@ pub(crate) use loop_::weight as loop_weight;
 use crate::FULL;
 use crate::crease::{self, Creases};
 use crate::limit::LimitRule;
-use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
+use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{FaceShape, Level, Split, Triangles};
 use crate::topology::{Connectivity, is_boundary};
 
@@ -356,34 +356,23 @@ const fn entry<S: Scheme>() -> Entry {
     Entry { info, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
 }
 
+/// Which kinds of levels a scheme can meet follows from what it takes and makes; the others are not compiled.
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {
+    // What a scheme's own split stores is met in full only.
+    let implicit = matches!(S::INFO.family, Family::Primal | Family::Mixed | Family::Quads);
     match (level, S::INFO.accepts) {
-        (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
-        // What a scheme's own split stores needs no rules for the others.
-        (level, _) if !matches!(S::INFO.family, Family::Primal | Family::Mixed) => {
-            seldom::<S>(level, split, tags, &mut Either::Eval(sink));
-        }
-        (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
-        (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
-        _ if S::COMMON => unreachable!("a scheme's own split made the level"),
-        _ => seldom::<S>(level, split, tags, &mut Either::Eval(sink)),
+        (Level::Base(c), _) => S::rules(*c, split, tags, sink),
+        (Level::Quads(c), accepts) if implicit && accepts != Accepts::Triangles => S::rules(*c, split, tags, sink),
+        (Level::Triangles(c), accepts) if implicit && accepts != Accepts::Polygons => S::rules(*c, split, tags, sink),
+        _ => unreachable!("a step says when it needs stored half-edges"),
     }
 }
 
 fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Record<'_>) {
-    match S::COMMON {
-        true => S::rules(level, split, tags, sink),
-        false => seldom::<S>(level, split, tags, &mut Either::Record(sink)),
-    }
-}
-
-/// The rules of schemes that are chosen less often, for all but points of triangle levels: one compilation, for stored levels
-/// where the scheme makes such.
-fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
-        (level, Family::Primal | Family::Quads) => S::rules(level, split, tags, sink),
+        (level, Family::Primal | Family::Mixed | Family::Quads) => S::rules(level, split, tags, sink),
         (Level::Base(c), _) => S::rules(*c, split, tags, sink),
-        _ => unreachable!("stored levels come of stored levels"),
+        _ => unreachable!("a step says when it needs stored half-edges"),
     }
 }
 
