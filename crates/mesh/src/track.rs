@@ -19,7 +19,7 @@ use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
-use crate::refine::sharp_at;
+use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Either, Eval, Source};
 use crate::split::stored::Cut;
@@ -189,7 +189,7 @@ impl Track {
             track.listed |= !track.source.is_empty();
         }
         if !idle {
-            track.creases = Creases::of(mesh, track.base(mesh));
+            track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
         if FULL && !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
@@ -316,12 +316,16 @@ impl Track {
         steps: &[Step],
         quota: &mut usize,
     ) -> Option<Option<Owned>> {
-        let sharp = if self.uv { &self.pins } else { sharp_at(steps, self.level, mesh, &self.corner) };
+        let sharp = match self.uv {
+            true => Kept { sharp: &self.pins, joined: &[] },
+            false => sharp_at(steps, self.level, mesh, &self.corner),
+        };
         if FULL && let Stage::Fair(pass, cursor) = &mut self.stage {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let creases = self.creases.as_ref();
-            let tags = Tags { sharp, creases, ..Tags::new(plan.rules, Default::default()) };
+            let Kept { sharp, joined } = sharp;
+            let tags = Tags { sharp, joined, creases, ..Tags::new(plan.rules, Default::default()) };
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
             fairing::rules(level, *pass, tags, &mut Either::Eval(&mut sink));
             if sink.done() {

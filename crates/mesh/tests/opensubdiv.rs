@@ -203,6 +203,14 @@ fn compare(oracle: &Value) -> Differences {
                 let fast = refined.points[v].map(f64::from);
                 worst.fast = worst.fast.max(far(&fast, &their_points[near[0]]) / size);
                 near.iter().for_each(|&i| met[i] = true);
+                if least > 1e-6 && number == 1 && std::env::var("LIMN_VERBOSE").is_ok() {
+                    println!(
+                        "DBG vertex {v} of base {} source {:?} off {least:.3} rule {}",
+                        mesh.counts().vertices,
+                        mesh.vertex_source.get(v),
+                        theirs["rules"][near[0]]
+                    );
+                }
                 near
             })
             .collect();
@@ -269,13 +277,16 @@ fn compare(oracle: &Value) -> Differences {
         let (limits, normals) = (numbers::<3>(limits), numbers::<3>(&theirs["limitNormals"]));
         let rules: Vec<u32> = serde_json::from_value(theirs["rules"].clone()).unwrap();
         let found = evaluate_limit(&mesh, &plan.to(number), &exact).unwrap();
+        let mut copies: HashMap<u64, u32> = HashMap::new();
+        ours.keys.iter().for_each(|&k| *copies.entry(k).or_default() += 1);
         for (v, near) in pairs.iter().enumerate() {
             let masks = ours.masks[v];
             let gap = |i: usize| far(&found.points[v], &limits[i]) / size;
             let d = near.iter().map(|&i| gap(i)).fold(f64::MAX, f64::min);
             let slot = if masks == Masks::Neither { &mut worst.left_out } else { &mut worst.limits };
             *slot = slot.max(d);
-            if masks != Masks::Both {
+            // Faces around a vertex that is no manifold have no order.
+            if masks != Masks::Both || copies[&ours.keys[v]] > 1 {
                 continue;
             }
             let d = near.iter().map(|&i| turned(&found, v, rules[i], normals[i])).fold(f64::MAX, f64::min);
