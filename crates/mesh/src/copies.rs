@@ -77,8 +77,13 @@ pub(crate) fn of(mesh: &Mesh, t: &Topology, rule: FaceVarying) -> Vec<Beyond> {
     let is_semi = |s: f32| s > 0.0 && s < INFINITE;
     let corner = |v: u32| own.origin(t.vertex_half_edge(v));
     let mut lists = Vec::new();
-    for range in start.windows(2).filter(|w| w[1] > w[0] + 1) {
+    for range in start.windows(2) {
         let copies = &copies[range[0] as usize..range[1] as usize];
+        // One alone sees everything, but for the seam that ends at it.
+        let seam = |v: u32| is_boundary(t.twin(t.vertex_half_edge(v))) && !is_boundary(own.twin(t.vertex_half_edge(v)));
+        if copies.len() < 2 && !copies.iter().any(|&v| seam(v)) {
+            continue;
+        }
         let mut seen: Vec<Seen> = Vec::new();
         let mut around: Vec<u32> = copies.iter().map(|&v| corner(v)).collect();
         around.sort_unstable();

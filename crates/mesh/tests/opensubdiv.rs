@@ -203,7 +203,7 @@ fn compare(oracle: &Value) -> Differences {
                 let fast = refined.points[v].map(f64::from);
                 worst.fast = worst.fast.max(far(&fast, &their_points[near[0]]) / size);
                 near.iter().for_each(|&i| met[i] = true);
-                if least > 1e-6 && number == 1 && std::env::var("LIMN_VERBOSE").is_ok() {
+                if least > 1e-6 && std::env::var("LIMN_VERBOSE").is_ok() {
                     println!(
                         "DBG vertex {v} of base {} source {:?} off {least:.3} rule {}",
                         mesh.counts().vertices,
@@ -269,6 +269,15 @@ fn compare(oracle: &Value) -> Differences {
                     worst
                 };
                 let best = faces_of[&face_key(own.clone())].iter().map(gap).fold(f64::MAX, f64::min);
+                if best > 1e-5 && std::env::var("LIMN_VERBOSE").is_ok() {
+                    for (&c, &k) in range.iter().zip(&own) { for &g in &faces_of[&face_key(own.clone())] {
+                        let at = their_faces[g].iter().position(|&v| their_keys[v] == k).unwrap();
+                        let value = uv.values[uv.corners[c] as usize].map(f64::from);
+                        let v = refined.faces.corners()[c] as usize;
+                        let d = far(&value, &values[corners[g][at]]);
+                        if d > 1e-5 { println!("DBG level {number} value vertex {v} source {:?} uv {} ours {value:.4?} theirs {:.4?} rule {}", mesh.vertex_source.get(v), uv.corners[c], values[corners[g][at]], theirs["rules"][their_keys.iter().position(|&x| x == k).unwrap()]); }
+                    } }
+                }
                 worst.values = worst.values.max(best);
             }
         }
