@@ -70,6 +70,18 @@ pub enum At {
     Corner,
 }
 
+/// The children of half-edge `h` that lie on it, at its origin and at its target: twice the same if it is not cut. None of
+/// splits that leave edges, or cut them otherwise.
+pub(crate) fn halves(parent: &Level<'_>, split: Split, h: u32) -> Option<[u32; 2]> {
+    match split {
+        Split::Quad => Some([4 * h, 4 * parent.next(h) + 3]),
+        Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
+        Split::Mixed => Some(mixed::halves(parent, h)),
+        Split::Poke => Some([3 * h; 2]),
+        Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
+    }
+}
+
 /// The decay of a sharpness by one.
 fn less(s: f32) -> f32 {
     if s >= INFINITE { s } else { (s - 1.0).max(0.0) }
@@ -172,14 +184,6 @@ impl Creases {
         let left =
             |b: &Beyond| b.below(|s| if split == Split::Poke { s } else { self.half(parent, b.vertex, s, decay) });
         out.listen(self.beyond.iter().filter_map(left).collect());
-        // The halves of half-edge h, at its origin and at its target.
-        let halves = |h: u32| match split {
-            Split::Quad => Some([4 * h, 4 * parent.next(h) + 3]),
-            Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
-            Split::Mixed => Some(mixed::halves(parent, h)),
-            Split::Poke => Some([3 * h; 2]),
-            Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
-        };
         if let Split::NWay { n, triangles } = split {
             let places = n_way::Places::new(parent, n, triangles);
             for &e in &self.sharp {
@@ -200,7 +204,7 @@ impl Creases {
         for &e in &self.sharp {
             let h = parent.edge_half_edge(e);
             let s = self.edges[e as usize];
-            let Some(halves) = halves(h) else { break };
+            let Some(halves) = halves(parent, split, h) else { break };
             if split == Split::Poke {
                 out.sharpen(child, halves[0], s);
                 continue;

@@ -12,7 +12,7 @@
 
 use crate::FULL;
 use crate::charts::{self, Channel};
-use crate::crease::Creases;
+use crate::crease::{Creases, halves};
 use crate::face_varying;
 use crate::fairing;
 use crate::holes;
@@ -118,6 +118,8 @@ pub(crate) struct Track {
     corner: Vec<bool>,
     /// Texture coordinates of `level` that stay.
     pins: Vec<bool>,
+    /// Of texture coordinates, boundary half-edges of `level` that are no boundaries of regions.
+    loose: Vec<u32>,
     /// How sharp `level` is.
     creases: Option<Creases>,
     /// Of texture coordinates that have to know how faces meet on seams: the mesh's own half-edges of `level`; none at level 0.
@@ -173,6 +175,7 @@ impl Track {
             before: Counts::default(),
             corner: Vec::new(),
             pins: Vec::new(),
+            loose: Vec::new(),
             creases: None,
             beside: None,
             charted: FULL && uv && steps.iter().any(|s| !s.split.keeps_corners()),
@@ -182,7 +185,7 @@ impl Track {
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
-            track.pins = face_varying::pins(mesh, channel, &plan.rules);
+            (track.pins, track.loose) = face_varying::pins(mesh, channel, &plan.rules);
         }
         if !uv {
             track.source = holes::sources(mesh, plan.rules.boundary);
@@ -203,7 +206,7 @@ impl Track {
         let step = steps.get(self.level as usize);
         self.lone = step.map_or_else(Vec::new, |s| s.split.lone(level));
         if FULL && self.uv && plan.rules.face_varying == FaceVarying::Boundaries {
-            face_varying::pin_boundary(level, &mut self.pins);
+            face_varying::pin_boundary(level, &self.loose, &mut self.pins);
         }
         self.stage = match step {
             Some(_) if self.uv => Stage::Wide(Cursor::default()),
@@ -241,6 +244,10 @@ impl Track {
                         .take()
                         .zip(next.as_ref())
                         .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
+                    let mut loose: Vec<u32> =
+                        self.loose.iter().filter_map(|&h| halves(&level, split, h)).flatten().collect();
+                    loose.sort_unstable();
+                    self.loose = loose;
                     self.half_edges = next;
                     let level = self.half_edges.take();
                     self.begin(&level.as_ref().map_or(Level::Base(base), Owned::view), plan, steps);

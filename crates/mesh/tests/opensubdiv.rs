@@ -57,7 +57,7 @@ impl Differences {
             ("holes", self.holes, 0.0),
             ("limits", self.limits, 1e-7),
             ("limits left out", self.left_out, f64::MAX),
-            ("normals", self.normals, 1e-5),
+            ("normals", self.normals, 1e-4),
             ("values", self.values, 2e-6),
         ]
     }
@@ -270,13 +270,23 @@ fn compare(oracle: &Value) -> Differences {
                 };
                 let best = faces_of[&face_key(own.clone())].iter().map(gap).fold(f64::MAX, f64::min);
                 if best > 1e-5 && std::env::var("LIMN_VERBOSE").is_ok() {
-                    for (&c, &k) in range.iter().zip(&own) { for &g in &faces_of[&face_key(own.clone())] {
-                        let at = their_faces[g].iter().position(|&v| their_keys[v] == k).unwrap();
-                        let value = uv.values[uv.corners[c] as usize].map(f64::from);
-                        let v = refined.faces.corners()[c] as usize;
-                        let d = far(&value, &values[corners[g][at]]);
-                        if d > 1e-5 { println!("DBG level {number} value vertex {v} source {:?} uv {} ours {value:.4?} theirs {:.4?} rule {}", mesh.vertex_source.get(v), uv.corners[c], values[corners[g][at]], theirs["rules"][their_keys.iter().position(|&x| x == k).unwrap()]); }
-                    } }
+                    for (&c, &k) in range.iter().zip(&own) {
+                        for &g in &faces_of[&face_key(own.clone())] {
+                            let at = their_faces[g].iter().position(|&v| their_keys[v] == k).unwrap();
+                            let value = uv.values[uv.corners[c] as usize].map(f64::from);
+                            let v = refined.faces.corners()[c] as usize;
+                            let d = far(&value, &values[corners[g][at]]);
+                            if d > 1e-5 {
+                                println!(
+                                    "DBG level {number} value vertex {v} source {:?} uv {} ours {value:.4?} theirs {:.4?} rule {}",
+                                    mesh.vertex_source.get(v),
+                                    uv.corners[c],
+                                    values[corners[g][at]],
+                                    theirs["rules"][their_keys.iter().position(|&x| x == k).unwrap()]
+                                );
+                            }
+                        }
+                    }
                 }
                 worst.values = worst.values.max(best);
             }
