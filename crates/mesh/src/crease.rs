@@ -410,7 +410,7 @@ fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
             parts.ends = next.ends;
         }
         if after != before {
-            let sharp = (ending / f64::from(count)).min(1.0);
+            let sharp = f64::from((ending as f32 / count as f32).min(1.0));
             parts.share = [0.0; 3];
             parts.share[before] = sharp;
             parts.share[after] = 1.0 - sharp;
