@@ -19,6 +19,9 @@
 //! *Transition.* Where edges end within a step (and with them the rule at v changes), v takes both rules: the sharp one by
 //! the mean sharpness of what ends, at most 1, and the softer one by the rest. An edge point does so by its edge's s.
 //!
+//! *Cuts.* Where a vertex was cut apart (edges of three faces; seams of texture coordinates) all its copies go by all of its
+//! edges: [`crate::copies`].
+//!
 //! Memory: 4 bytes an edge and 1 a vertex of a level; levels without marks have none of it. Cost: linear in the sharp edges
 //! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Limit: splits
 //! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.

@@ -20,9 +20,14 @@
 //!
 //! What is pinned at level 0 is pinned for ever, and edges of seams bring curves only. So the rules are one flag for each
 //! value of level 0, and what refines them is the scheme itself, on half-edges with seams cut ([`crate::mesh::UvChannel`]).
+//! Semi-sharp edges inside a region make its value a corner for as long as they last, by corners+1 and corners+2 that of
+//! the other of two regions too: [`crate::copies`]. Edges of three faces are no boundaries where their faces agree; where one
+//! does not, everything at its ends stays.
+//!
 //! Source: OpenSubdiv 3.5's documentation ("Subdivision surfaces", face-varying interpolation rules) and the behaviour of
 //! its `Vtr::FVarLevel`. Cost: the valence, at vertices on seams and boundaries. Limit: OpenSubdiv tells values by index,
-//! this by what they are.
+//! this by what they are; where two values take turns around a vertex (a b a b) OpenSubdiv counts three or four, by the face
+//! that it begins with.
 
 use crate::marks::INFINITE;
 use crate::mesh::{Mesh, UvChannel};

@@ -6,9 +6,11 @@
 //!
 //! Nothing that a polygon soup can hold is refused but indices that do not exist, coordinates that are not finite numbers,
 //! and no face at all. An edge with more than two faces is cut apart into boundaries; the copies of its vertices refine by
-//! the boundary curve rule, which reads the same two neighbours on every sheet, so they stay equal to the last bit. Where
-//! that does not hold (ends of the cut, fans that meet in a point only) the copies are tagged sharp: every scheme keeps
-//! them. Cost: linear in corners, about 60 ns each. Source of the invariants: [`crate::topology`].
+//! the boundary curve rule, which reads the same two neighbours on every sheet, so they stay equal to the last bit; so does
+//! one that is a sheet's only face there (`joined`). Where that does not hold (ends of the cut, fans that meet in a point only)
+//! the copies are tagged sharp: every scheme keeps them. That is OpenSubdiv's rule, but for a vertex inside a cut where a whole
+//! fan touches in a point as well, which it lets go. Cost: linear in corners, about 60 ns each. Source of the invariants:
+//! [`crate::topology`].
 
 use crate::connect::{self, Matching};
 use crate::marks;

@@ -99,6 +99,8 @@ oracles! {
     openmesh_icosa_butterfly openmesh_tetra_butterfly
     openmesh_icosa_sqrt3 cgal_tetra_sqrt3 cgal_gridtri3_sqrt3 openmesh_gridtri3_sqrt3 cgal_cube_doosabin cgal_tetra_doosabin
     openmesh_icosa_sqrt3interp openmesh_tetra_sqrt3interp
+    cgal_random_catmark cgal_random_loop cgal_random_sqrt3 cgal_random_doosabin
+    openmesh_random_butterfly openmesh_random_sqrt3interp openmesh_random_sqrt3
 }
 
 /// The rim's points of interpolating sqrt3, which OpenMesh computes by the paper's rule (its points of triangles with two
