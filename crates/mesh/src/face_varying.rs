@@ -29,10 +29,12 @@
 //! this by what they are; where two values take turns around a vertex (a b a b) OpenSubdiv counts three or four, by the face
 //! that it begins with.
 
+use crate::crease::halves;
 use crate::marks::INFINITE;
 use crate::mesh::{Mesh, UvChannel};
 use crate::order::key;
 use crate::scheme::{Boundary, FaceVarying, Rules};
+use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// What is sharp at level 0.
@@ -189,4 +191,11 @@ pub(crate) fn pin_boundary(uv: &impl Connectivity, loose: &[u32], pins: &mut Vec
             pins[uv.origin(h) as usize] = true;
         }
     }
+}
+
+/// The children of `loose` half-edges of `level`, which `split` halves.
+pub(crate) fn below(loose: &[u32], level: &Level<'_>, split: Split) -> Vec<u32> {
+    let mut children: Vec<u32> = loose.iter().filter_map(|&h| halves(level, split, h)).flatten().collect();
+    children.sort_unstable();
+    children
 }

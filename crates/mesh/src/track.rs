@@ -12,7 +12,7 @@
 
 use crate::FULL;
 use crate::charts::{self, Channel};
-use crate::crease::{Creases, halves};
+use crate::crease::Creases;
 use crate::face_varying;
 use crate::fairing;
 use crate::holes;
@@ -244,10 +244,7 @@ impl Track {
                         .take()
                         .zip(next.as_ref())
                         .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
-                    let mut loose: Vec<u32> =
-                        self.loose.iter().filter_map(|&h| halves(&level, split, h)).flatten().collect();
-                    loose.sort_unstable();
-                    self.loose = loose;
+                    self.loose = face_varying::below(&self.loose, &level, split);
                     self.half_edges = next;
                     let level = self.half_edges.take();
                     self.begin(&level.as_ref().map_or(Level::Base(base), Owned::view), plan, steps);
@@ -331,8 +328,8 @@ impl Track {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let creases = self.creases.as_ref();
-            let Kept { sharp, joined } = sharp;
-            let tags = Tags { sharp, joined, creases, ..Tags::new(plan.rules, Default::default()) };
+            let tags =
+                Tags { sharp: sharp.sharp, joined: sharp.joined, creases, ..Tags::new(plan.rules, Default::default()) };
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
             fairing::rules(level, *pass, tags, &mut Either::Eval(&mut sink));
             if sink.done() {
