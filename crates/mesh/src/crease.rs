@@ -19,14 +19,18 @@
 //! *Transition.* Where edges end within a step (and with them the rule at v changes), v takes both rules: the sharp one by
 //! the mean sharpness of what ends, at most 1, and the softer one by the rest. An edge point does so by its edge's s.
 //!
+//! *Cuts.* Where a vertex was cut apart (edges of three faces; seams of texture coordinates) all its copies go by all of its
+//! edges: [`crate::copies`].
+//!
 //! Memory: 4 bytes an edge and 1 a vertex of a level; levels without marks have none of it. Cost: linear in the sharp edges
 //! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Limit: splits
 //! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.
 
 use crate::FULL;
+use crate::copies::{self, Beyond, Place};
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
-use crate::scheme::{Decay, Tags};
+use crate::scheme::{Decay, FaceVarying, Tags};
 use crate::sink::Row;
 use crate::split::{Level, Split, mixed, n_way};
 use crate::topology::{Connectivity, Topology, is_boundary};
@@ -42,6 +46,8 @@ pub struct Creases {
     flags: Vec<u8>,
     /// Of the first vertices; later ones are smooth.
     vertices: Vec<f32>,
+    /// Sharp edges at other copies of vertices, by rising vertices.
+    beyond: Vec<Beyond>,
 }
 
 /// The bits of a flag that count sharp edges, at most 3. One of them on a boundary counts as 3: with its two edges it makes
@@ -51,6 +57,8 @@ const EDGES: u8 = 3;
 const SHARP: u8 = 4;
 /// An infinitely sharp vertex.
 const KEPT: u8 = 8;
+/// A vertex that stays for as long as another: [`Beyond::leans`].
+const LEANS: u8 = 16;
 
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,15 +73,27 @@ pub enum At {
     Corner,
 }
 
+/// The children of half-edge `h` that lie on it, at its origin and at its target: twice the same if it is not cut. None of
+/// splits that leave edges, or cut them otherwise.
+pub(crate) fn halves(parent: &Level<'_>, split: Split, h: u32) -> Option<[u32; 2]> {
+    match split {
+        Split::Quad => Some([4 * h, 4 * parent.next(h) + 3]),
+        Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
+        Split::Mixed => Some(mixed::halves(parent, h)),
+        Split::Poke => Some([3 * h; 2]),
+        Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
+    }
+}
+
 /// The decay of a sharpness by one.
 fn less(s: f32) -> f32 {
     if s >= INFINITE { s } else { (s - 1.0).max(0.0) }
 }
 
 impl Creases {
-    /// The marks of `mesh` on `t`, its own half-edges or those of its texture coordinates; none if nothing is sharp. Cost:
-    /// linear where something is.
-    pub fn of(mesh: &Mesh, t: &Topology) -> Option<Creases> {
+    /// The marks of `mesh` on `t`, its own half-edges or those of its texture coordinates (with their rule); none if nothing
+    /// is sharp. Cost: linear where something is.
+    pub(crate) fn of(mesh: &Mesh, t: &Topology, rule: FaceVarying) -> Option<Creases> {
         if !FULL || mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty() {
             return None;
         }
@@ -89,17 +109,25 @@ impl Creases {
             let of = |v: u32| mesh.vertex_sharpness[own.origin(t.vertex_half_edge(v)) as usize];
             out.stay((0..t.vertices()).map(of).collect());
         }
+        out.listen(copies::of(mesh, t, rule));
         out.some()
     }
 
-    /// The sharpness of every half-edge and vertex of `t` as these say; none if nothing is sharp. Cost: linear.
-    pub(crate) fn marked_by(t: &Topology, edge: impl Fn(u32) -> f32, vertex: impl Fn(u32) -> f32) -> Option<Creases> {
+    /// The sharpness of every half-edge and vertex of `t`, and what lies beyond, as these say; none if nothing is sharp.
+    /// Cost: linear.
+    pub(crate) fn marked_by(
+        t: &Topology,
+        edge: impl Fn(u32) -> f32,
+        vertex: impl Fn(u32) -> f32,
+        beyond: Vec<Beyond>,
+    ) -> Option<Creases> {
         let mut out = Creases::with_room(t);
         for e in 0..t.edges() {
             let h = t.edge_half_edge(e);
             out.sharpen(t, h, edge(h));
         }
         out.stay((0..t.vertices()).map(vertex).collect());
+        out.listen(beyond);
         out.some()
     }
 
@@ -130,8 +158,24 @@ impl Creases {
         self.vertices = if vertices.iter().any(|&s| s > 0.0) { vertices } else { Vec::new() };
     }
 
+    /// Notes what lies beyond cuts.
+    fn listen(&mut self, beyond: Vec<Beyond>) {
+        for b in &beyond {
+            let flag = &mut self.flags[b.vertex as usize];
+            *flag |=
+                if b.leans { LEANS } else { 0 } | if b.edges.iter().any(|x| x.1 == Place::Copy) { EDGES } else { 0 };
+        }
+        self.beyond = beyond;
+    }
+
     fn some(self) -> Option<Creases> {
-        (!self.sharp.is_empty() || !self.vertices.is_empty()).then_some(self)
+        (!self.sharp.is_empty() || !self.vertices.is_empty() || !self.beyond.is_empty()).then_some(self)
+    }
+
+    /// The sharp edges at other copies of `v`.
+    pub(crate) fn beyond(&self, v: u32) -> Option<&Beyond> {
+        let found = self.beyond.binary_search_by_key(&v, |b| b.vertex);
+        found.ok().map(|i| &self.beyond[i])
     }
 
     /// What is left one level further. `child` is `parent` after `split`. None if nothing is.
@@ -140,14 +184,9 @@ impl Creases {
             return None;
         }
         let mut out = Creases::with_room(child);
-        // The halves of half-edge h, at its origin and at its target.
-        let halves = |h: u32| match split {
-            Split::Quad => Some([4 * h, 4 * parent.next(h) + 3]),
-            Split::Triangle => Some([3 * h, 3 * parent.next(h) + 2]),
-            Split::Mixed => Some(mixed::halves(parent, h)),
-            Split::Poke => Some([3 * h; 2]),
-            Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
-        };
+        let left =
+            |b: &Beyond| b.below(|s| if split == Split::Poke { s } else { self.half(parent, b.vertex, s, decay) });
+        out.listen(self.beyond.iter().filter_map(left).collect());
         if let Split::NWay { n, triangles } = split {
             let places = n_way::Places::new(parent, n, triangles);
             for &e in &self.sharp {
@@ -168,7 +207,7 @@ impl Creases {
         for &e in &self.sharp {
             let h = parent.edge_half_edge(e);
             let s = self.edges[e as usize];
-            let Some(halves) = halves(h) else { break };
+            let Some(halves) = halves(parent, split, h) else { break };
             if split == Split::Poke {
                 out.sharpen(child, halves[0], s);
                 continue;
@@ -214,14 +253,8 @@ impl Creases {
         if decay == Decay::Uniform || s >= INFINITE {
             return less(s);
         }
-        let (mut sum, mut count) = (0.0, 0);
-        spokes(c, v, |h, _| {
-            let s = self.along(c, h);
-            if s > 0.0 && s < INFINITE {
-                (sum, count) = (sum + s, count + 1);
-            }
-        });
-        chaikin(s, sum, count)
+        let all = self.survey(c, v, |s, _| s);
+        chaikin(s, all.sum(), all.semi)
     }
 }
 
@@ -244,7 +277,7 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
     match tags.creases {
         _ if tags.is_sharp(c, v) => At::Corner,
         Some(creases) if creases.vertex(v) > 0.0 => At::Corner,
-        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v, |s| s).at(),
+        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v, |s, _| s).at(),
         _ if is_boundary(c.twin(c.vertex_half_edge(v))) => {
             let mut faces = 0;
             c.turn(v, |_| faces += 1);
@@ -258,7 +291,7 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
 #[inline(never)]
 pub(crate) fn ends<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Option<[u32; 2]> {
     let creases = tags.creases.filter(|creases| creases.vertex(v) <= 0.0)?;
-    let found = creases.survey(c, v, |s| s);
+    let found = creases.survey(c, v, |s, _| s);
     (found.count == 2).then_some(found.ends)
 }
 
@@ -269,10 +302,21 @@ struct Survey {
     places: [u32; 2],
     ends: [u32; 2],
     semi: u32,
-    sum: f32,
+    /// In f64, where the order does not matter: every copy of a vertex has to find the same.
+    sum: f64,
 }
 
 impl Survey {
+    fn add(&mut self, s: f32) {
+        if s < INFINITE {
+            (self.semi, self.sum) = (self.semi + 1, self.sum + f64::from(s));
+        }
+    }
+
+    fn sum(&self) -> f32 {
+        self.sum as f32
+    }
+
     fn at(&self) -> At {
         match self.count {
             0 => At::Smooth,
@@ -284,23 +328,28 @@ impl Survey {
 }
 
 impl Creases {
-    /// The edges at `v`, as sharp as `of` says of what they are.
-    fn survey<C: Connectivity>(&self, c: &C, v: u32, mut of: impl FnMut(f32) -> f32) -> Survey {
+    /// The edges at `v`, as sharp as `of` says of what they are and of where they lie, if that is beyond a cut.
+    fn survey<C: Connectivity>(&self, c: &C, v: u32, mut of: impl FnMut(f32, Option<Place>) -> f32) -> Survey {
         let mut found = Survey { count: 0, places: [0; 2], ends: [v; 2], semi: 0, sum: 0.0 };
         let mut place = 0;
         spokes(c, v, |h, other| {
-            let s = of(self.along(c, h));
+            let s = of(self.along(c, h), None);
             if s > 0.0 {
                 if found.count < 2 {
                     (found.places[found.count], found.ends[found.count]) = (place, other);
                 }
                 found.count += 1;
-                if s < INFINITE {
-                    (found.semi, found.sum) = (found.semi + 1, found.sum + s);
-                }
+                found.add(s);
             }
             place += 1;
         });
+        for &(s, at) in self.beyond(v).into_iter().flat_map(|b| &b.edges) {
+            let s = of(s, Some(at));
+            if s > 0.0 {
+                found.count += usize::from(at == Place::Copy);
+                found.add(s);
+            }
+        }
         found
     }
 }
@@ -332,38 +381,47 @@ fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
         return parts;
     }
     let own = creases.vertex(v);
-    let now = creases.survey(c, v, |s| s);
-    let (before, mut after) = (part(own > 0.0, now.count), part(own > 0.0, now.count));
+    let leans = creases.beyond(v).is_some_and(|b| b.leans);
+    let now = creases.survey(c, v, |s, _| s);
+    let before = part(own > 0.0 || leans, now.count);
+    let mut after = before;
     parts.ends = now.ends;
-    let (mut ending, mut count) = (0.0, 0);
     if now.semi > 0 || own > 0.0 {
-        // What ends within this step.
+        // What ends within this step, and whether what is leant on goes on.
+        let (mut ending, mut count, mut stays) = (0.0, 0u32, false);
         if own > 0.0 && less(own) == 0.0 {
-            (ending, count) = (own, 1);
+            (ending, count) = (f64::from(own), 1);
         }
-        let next = creases.survey(c, v, |s| {
+        let next = creases.survey(c, v, |s, at| {
             let left = match tags.rules.decay {
-                Decay::Chaikin if s > 0.0 && s < INFINITE => chaikin(s, now.sum, now.semi),
+                Decay::Chaikin if s > 0.0 && s < INFINITE => chaikin(s, now.sum(), now.semi),
                 _ => less(s),
             };
-            if s > 0.0 && left == 0.0 {
-                (ending, count) = (ending + s, count + 1);
+            let counts = match at {
+                None | Some(Place::Copy) => true,
+                Some(Place::Region) => leans,
+                Some(Place::Seam) => false,
+            };
+            if counts && s > 0.0 && left == 0.0 {
+                (ending, count) = (ending + f64::from(s), count + 1);
             }
+            stays |= at.is_some() && left > 0.0;
             left
         });
-        after = part(less(own) > 0.0, next.count);
+        after = part(less(own) > 0.0 || leans && stays, next.count);
         if after == 1 && before == 2 {
             parts.ends = next.ends;
         }
+        if after != before {
+            let sharp = f64::from((ending as f32 / count as f32).min(1.0));
+            parts.share = [0.0; 3];
+            parts.share[before] = sharp;
+            parts.share[after] = 1.0 - sharp;
+            return parts;
+        }
     }
-    parts.share[2] = 0.0;
-    if after == before {
-        parts.share[before] = 1.0;
-    } else {
-        let sharp = f64::from((ending / count as f32).min(1.0));
-        parts.share[before] = sharp;
-        parts.share[after] = 1.0 - sharp;
-    }
+    parts.share = [0.0; 3];
+    parts.share[after] = 1.0;
     parts
 }
 

@@ -20,13 +20,21 @@
 //!
 //! What is pinned at level 0 is pinned for ever, and edges of seams bring curves only. So the rules are one flag for each
 //! value of level 0, and what refines them is the scheme itself, on half-edges with seams cut ([`crate::mesh::UvChannel`]).
+//! Semi-sharp edges inside a region make its value a corner for as long as they last, by corners+1 and corners+2 that of
+//! the other of two regions too: [`crate::copies`]. Edges of three faces are no boundaries where their faces agree; where one
+//! does not, everything at its ends stays.
+//!
 //! Source: OpenSubdiv 3.5's documentation ("Subdivision surfaces", face-varying interpolation rules) and the behaviour of
 //! its `Vtr::FVarLevel`. Cost: the valence, at vertices on seams and boundaries. Limit: OpenSubdiv tells values by index,
-//! this by what they are.
+//! this by what they are; where two values take turns around a vertex (a b a b) OpenSubdiv counts three or four, by the face
+//! that it begins with.
 
+use crate::crease::halves;
 use crate::marks::INFINITE;
 use crate::mesh::{Mesh, UvChannel};
+use crate::order::key;
 use crate::scheme::{Boundary, FaceVarying, Rules};
+use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// What is sharp at level 0.
@@ -49,12 +57,61 @@ struct Fan {
     creased: bool,
 }
 
-/// The values of `mesh` that stay where they are. Cost: linear.
-pub(crate) fn pins(mesh: &Mesh, uv: &UvChannel, rules: &Rules) -> Vec<bool> {
+/// The values of `mesh` that stay where they are, and the half-edges of `uv` that are no boundary of a region though they
+/// were cut from other faces: where three faces meet on an edge and agree on its values. Cost: linear.
+pub(crate) fn pins(mesh: &Mesh, uv: &UvChannel, rules: &Rules) -> (Vec<bool>, Vec<u32>) {
     let sharp = Sharp { kept: &mesh.sharp, vertices: &mesh.vertex_sharpness, edges: &mesh.edge_sharpness };
     let value = |u: u32| uv.values[u as usize];
     let same = |a: u32, b: u32| a == b || value(a).map(|x| x + 0.0) == value(b).map(|x| x + 0.0);
-    pinned(&mesh.topology, &uv.topology, sharp, rules, same)
+    let mut pins = pinned(&mesh.topology, &uv.topology, sharp, rules, same);
+    let loose = if mesh.sharp.is_empty() { Vec::new() } else { heal(mesh, &uv.topology, rules, same, &mut pins) };
+    (pins, loose)
+}
+
+/// Mends what cuts between copies of a vertex have done to `pins`: they are no boundaries of regions, unless the faces there
+/// disagree; then, and where any other seam comes to such a vertex, all of its values stay. Gives the sides of cuts that no
+/// seam runs along.
+fn heal(mesh: &Mesh, uv: &Topology, rules: &Rules, same: impl Fn(u32, u32) -> bool, pins: &mut [bool]) -> Vec<u32> {
+    let t = &mesh.topology;
+    let source = |h: u32| mesh.vertex_source[t.origin(h) as usize];
+    // Where each boundary side runs, from the lower position to the higher, and its values there.
+    let side = |h: u32| {
+        let ends = [h, t.next(h)];
+        let [a, b] = if source(ends[0]) < source(ends[1]) { ends } else { [ends[1], ends[0]] };
+        (key(source(a), source(b)), [uv.origin(a), uv.origin(b)])
+    };
+    let mut sides: Vec<(u64, u32)> =
+        (0..t.boundary_half_edges()).map(|r| t.boundary_half_edge(r)).map(|h| (side(h).0, h)).collect();
+    sides.sort_unstable();
+    let (mut loose, mut torn) = (Vec::new(), vec![false; mesh.weld_class.len()]);
+    let mut tear = |h: u32| [h, t.next(h)].map(source).into_iter().for_each(|p| torn[p as usize] = true);
+    for cut in sides.chunk_by(|a, b| a.0 == b.0).filter(|cut| cut.len() > 1) {
+        let first = side(cut[0].1).1;
+        if cut.iter().map(|x| side(x.1).1).all(|v| same(v[0], first[0]) && same(v[1], first[1])) {
+            loose.extend(cut.iter().map(|x| x.1));
+        } else {
+            tear(cut[0].1);
+        }
+    }
+    loose.sort_unstable();
+    for r in 0..uv.boundary_half_edges() {
+        let h = uv.boundary_half_edge(r);
+        if !is_boundary(t.twin(h)) {
+            tear(h);
+        }
+    }
+    let mut copies = vec![0u8; mesh.weld_class.len()];
+    mesh.vertex_source.iter().for_each(|&p| copies[p as usize] = copies[p as usize].saturating_add(1));
+    for u in 0..uv.vertices() {
+        let start = uv.vertex_half_edge(u);
+        let (v, position) = (t.origin(start), source(start) as usize);
+        if copies[position] < 2 || rules.face_varying == FaceVarying::All {
+            continue;
+        }
+        let kept = mesh.sharp[v as usize] || mesh.vertex_sharpness.get(v as usize).is_some_and(|&s| s >= INFINITE);
+        pins[u as usize] = kept || torn[position];
+    }
+    loose
 }
 
 /// The vertices of `uv` that stay: half-edges `t` with seams cut; `same` says whether two of its vertices are one value.
@@ -126,10 +183,19 @@ fn around(t: &Topology, uv: &Topology, v: u32, edges: &[f32], fans: &mut Vec<Fan
     });
 }
 
-/// Adds all of the boundary of `uv` to what stays there.
-pub(crate) fn pin_boundary(uv: &impl Connectivity, pins: &mut Vec<bool>) {
+/// Adds all of the boundary of `uv` to what stays there, but for `loose` half-edges.
+pub(crate) fn pin_boundary(uv: &impl Connectivity, loose: &[u32], pins: &mut Vec<bool>) {
     pins.resize(uv.vertices() as usize, false);
-    for r in 0..uv.boundary_half_edges() {
-        pins[uv.origin(uv.boundary_half_edge(r)) as usize] = true;
+    for h in (0..uv.boundary_half_edges()).map(|r| uv.boundary_half_edge(r)) {
+        if loose.binary_search(&h).is_err() {
+            pins[uv.origin(h) as usize] = true;
+        }
     }
+}
+
+/// The children of `loose` half-edges of `level`, which `split` halves.
+pub(crate) fn below(loose: &[u32], level: &Level<'_>, split: Split) -> Vec<u32> {
+    let mut children: Vec<u32> = loose.iter().filter_map(|&h| halves(level, split, h)).flatten().collect();
+    children.sort_unstable();
+    children
 }

@@ -27,6 +27,7 @@
 
 mod charts;
 mod connect;
+mod copies;
 pub mod crease;
 mod face_varying;
 pub mod fairing;

@@ -129,25 +129,20 @@ pub(crate) fn resolve(
     out
 }
 
-/// Keeps copies of a vertex together where a crease ends at one of them. All lie on an edge that was cut apart, which is
-/// infinitely sharp, and only one of them sees the crease: so all become corners, for as long as it lasts; for ever where
-/// there are several, which may end one after the other.
+/// Keeps copies of a vertex together where a crease that lasts ends at one of them. All lie on an edge that was cut apart,
+/// which is infinitely sharp, and only one of them sees the crease: so all become corners. (What does not last:
+/// [`crate::copies`].)
 fn tie(t: &Topology, (first, next): (&[u32], &[u32]), marks: &mut Resolved) {
     for &start in first.iter().filter(|&&v| v != NONE && next[v as usize] != NONE) {
         let copies = || std::iter::successors(Some(start), |&v| Some(next[v as usize]).filter(|&n| n != NONE));
-        let (mut count, mut sharpness) = (0, 0.0f32);
+        let mut lasts = false;
         for v in copies() {
-            t.turn(v, |h| {
-                let s = marks.edge_sharpness[t.edge(h) as usize];
-                if s > 0.0 && !is_boundary(t.twin(h)) {
-                    (count, sharpness) = (count + 1, s);
-                }
-            });
+            let sharp = |h: u32| marks.edge_sharpness[t.edge(h) as usize] >= INFINITE && !is_boundary(t.twin(h));
+            t.turn(v, |h| lasts |= sharp(h));
         }
-        if count > 0 {
-            let sharpness = if count == 1 { sharpness } else { INFINITE };
+        if lasts {
             let all = fill(&mut marks.vertex_sharpness, t.vertices() as usize, 0.0);
-            copies().for_each(|v| all[v as usize] = all[v as usize].max(sharpness));
+            copies().for_each(|v| all[v as usize] = INFINITE);
         }
     }
 }

@@ -6,9 +6,11 @@
 //!
 //! Nothing that a polygon soup can hold is refused but indices that do not exist, coordinates that are not finite numbers,
 //! and no face at all. An edge with more than two faces is cut apart into boundaries; the copies of its vertices refine by
-//! the boundary curve rule, which reads the same two neighbours on every sheet, so they stay equal to the last bit. Where
-//! that does not hold (ends of the cut, fans that meet in a point only) the copies are tagged sharp: every scheme keeps
-//! them. Cost: linear in corners, about 60 ns each. Source of the invariants: [`crate::topology`].
+//! the boundary curve rule, which reads the same two neighbours on every sheet, so they stay equal to the last bit; so does
+//! one that is a sheet's only face there (`joined`). Where that does not hold (ends of the cut, fans that meet in a point only)
+//! the copies are tagged sharp: every scheme keeps them. That is OpenSubdiv's rule, but for a vertex inside a cut where a whole
+//! fan touches in a point as well, which it lets go. Cost: linear in corners, about 60 ns each. Source of the invariants:
+//! [`crate::topology`].
 
 use crate::connect::{self, Matching};
 use crate::marks;
@@ -31,6 +33,9 @@ pub struct Mesh {
     pub uv: Option<UvChannel>,
     /// Vertices that every scheme keeps where they are; empty if there are none.
     pub sharp: Vec<bool>,
+    /// Vertices of one face that are no corners, whatever the boundary rule: both edges were cut from other faces, and the
+    /// other copies follow the curve. Empty if there are none.
+    pub joined: Vec<bool>,
     /// The sharpness of each edge, 0 smooth, from [`crate::marks::INFINITE`] on for ever; empty if all are smooth.
     pub edge_sharpness: Vec<f32>,
     /// The sharpness of each vertex; empty if all are smooth.
@@ -144,7 +149,7 @@ impl Mesh {
         let m = connect::connect(&faces.offsets, &mut faces.corners, &mut faces.slots, soup.positions.len());
         let (topology, vertex_source) =
             Topology::assemble(faces.offsets.clone(), &faces.corners, soup.positions.len(), &m.mate);
-        let (sharp, split) = tie(&topology, &vertex_source, soup.positions.len());
+        let (sharp, joined, split) = tie(&topology, &vertex_source, soup.positions.len());
         report(&mut notes, &m, &faces, split);
         let marks::Resolved { edge_sharpness, vertex_sharpness, holes, knots } =
             marks::resolve(&soup.marks, &topology, &weld_class, &vertex_source, &faces.source, &mut notes);
@@ -169,6 +174,7 @@ impl Mesh {
             colors,
             uv,
             sharp,
+            joined,
             edge_sharpness,
             vertex_sharpness,
             holes,
@@ -376,37 +382,37 @@ fn count(tally: &mut (u64, u32), f: usize) {
     tally.0 += 1;
 }
 
-/// Finds which copies of split vertices must be sharp to stay together, and how many positions were split.
-fn tie(t: &Topology, source: &[u32], positions: usize) -> (Vec<bool>, (u64, u32)) {
+/// Finds which copies of split vertices must be sharp to stay together, which may not be corners, and how many positions were
+/// split.
+fn tie(t: &Topology, source: &[u32], positions: usize) -> (Vec<bool>, Vec<bool>, (u64, u32)) {
     let mut copies = vec![0u8; positions];
     for &s in source {
         copies[s as usize] = copies[s as usize].saturating_add(1);
     }
     let split = copies.iter().filter(|&&c| c > 1).count() as u64;
     if split == 0 {
-        return (Vec::new(), (0, 0));
+        return (Vec::new(), Vec::new(), (0, 0));
     }
     let first = copies.iter().position(|&c| c > 1).unwrap_or(0) as u32;
-    // A copy's boundary neighbours, smaller source first; NONE twice for anything else than a plain boundary vertex of
-    // two or more faces (a single face may be a sharp corner by the boundary rule on one sheet and not on another).
-    const LONE: [u32; 2] = [NONE; 2];
+    // A copy's boundary neighbours, smaller source first; NONE twice where there are none.
     let mut seen: Vec<Option<[u32; 2]>> = vec![None; positions];
     let mut apart = vec![false; positions];
+    let mut lone = vec![false; source.len()];
     for (v, &s) in source.iter().enumerate().filter(|(_, s)| copies[**s as usize] > 1) {
         let mut faces = 0;
-        let last = t.turn(v as u32, |_| faces += 1);
-        let pair = match last {
-            Some(last) if faces > 1 => {
-                let a = source[t.origin(t.next(t.vertex_half_edge(v as u32))) as usize];
-                let b = source[t.origin(last) as usize];
-                [a.min(b), a.max(b)]
-            }
-            _ => LONE,
-        };
+        let mut pair = [NONE; 2];
+        if let Some(last) = t.turn(v as u32, |_| faces += 1) {
+            let a = source[t.origin(t.next(t.vertex_half_edge(v as u32))) as usize];
+            let b = source[t.origin(last) as usize];
+            pair = [a.min(b), a.max(b)];
+            lone[v] = faces == 1;
+        }
         let known = *seen[s as usize].get_or_insert(pair);
-        apart[s as usize] |= pair == LONE || known != pair;
+        apart[s as usize] |= pair == [NONE; 2] || known != pair;
     }
-    (source.iter().map(|&s| apart[s as usize]).collect(), (split, first))
+    lone.iter_mut().zip(source).for_each(|(lone, &s)| *lone &= !apart[s as usize]);
+    let joined = if lone.contains(&true) { lone } else { Vec::new() };
+    (source.iter().map(|&s| apart[s as usize]).collect(), joined, (split, first))
 }
 
 fn report(notes: &mut Vec<Note>, m: &Matching, faces: &Faces, split: (u64, u32)) {

@@ -16,7 +16,7 @@ use crate::fairing::Fairing;
 use crate::limit::LimitRule;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
-use crate::refine::RefineError;
+use crate::refine::{Kept, RefineError};
 use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
 use crate::topology::Connectivity;
@@ -172,14 +172,15 @@ impl Plan {
     }
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.
-    pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool], creases: Option<&'a Creases>) -> Tags<'a> {
-        Tags { sharp, creases, step: at, size: step.size, ..Tags::new(self.rules, step.params) }
+    pub(crate) fn tags<'a>(&self, step: &Step, at: u32, kept: Kept<'a>, creases: Option<&'a Creases>) -> Tags<'a> {
+        let Kept { sharp, joined } = kept;
+        Tags { sharp, joined, creases, step: at, size: step.size, ..Tags::new(self.rules, step.params) }
     }
 
     /// The vertices of level 0 that stay: what the mesh keeps, and corners where the boundary rule says so.
     pub(crate) fn kept(&self, mesh: &Mesh) -> Vec<bool> {
         let t = &mesh.topology;
-        let tags = Tags { sharp: &mesh.sharp, ..Tags::new(self.rules, [0.0; MOST_PARAMS]) };
+        let tags = Tags { sharp: &mesh.sharp, joined: &mesh.joined, ..Tags::new(self.rules, [0.0; MOST_PARAMS]) };
         let kept = |v: u32| mesh.vertex_sharpness.get(v as usize).is_some_and(|&s| s >= INFINITE);
         (0..t.vertices()).map(|v| kept(v) || tags.is_sharp(t, v)).collect()
     }

@@ -416,12 +416,13 @@ fn run<const N: usize>(
     let mut old = values.to_vec();
     let mut owned: Option<Owned> = None;
     let mut knots = mesh.knots.clone();
-    let mut creases = Creases::of(mesh, &mesh.topology);
+    let mut creases = Creases::of(mesh, &mesh.topology, plan.rules.face_varying);
     for at in 0..=plan.level {
         let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
         let sharp = sharp_at(&steps, at, mesh, &kept);
         if let Some(fairing) = plan.fairing(at) {
-            let tags = Tags { sharp, creases: creases.as_ref(), ..Tags::new(plan.rules, Default::default()) };
+            let Kept { sharp, joined } = sharp;
+            let tags = Tags { sharp, joined, creases: creases.as_ref(), ..Tags::new(plan.rules, Default::default()) };
             for pass in 0..fairing.passes() {
                 let mut new = old.clone();
                 let mut take = |v: u32, row: &[(Source, f64)], _| new[v as usize] = weigh(row, |s| of(&old, &[], s));
@@ -472,15 +473,21 @@ fn of<const N: usize>(old: &[[f64; N]], new: &[[f64; N]], source: Source) -> [f6
     }
 }
 
+/// Vertices of a level that stay, and those of one face that do not.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Kept<'a> {
+    pub sharp: &'a [bool],
+    pub joined: &'a [bool],
+}
+
 /// The vertices of `level` that stay, as far as ids tell: the mesh's own; with its corners after a turn of edges, which hides
 /// them; none where vertices have been cut apart.
-pub(crate) fn sharp_at<'a>(steps: &[Step], level: u32, mesh: &'a Mesh, kept: &'a [bool]) -> &'a [bool] {
+pub(crate) fn sharp_at<'a>(steps: &[Step], level: u32, mesh: &'a Mesh, kept: &'a [bool]) -> Kept<'a> {
     let before = &steps[..(level as usize).min(steps.len())];
     if before.iter().any(|s| !s.split.keeps_vertices()) {
-        &[]
-    } else if before.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
-        kept
+        Kept::default()
     } else {
-        &mesh.sharp
+        let turned = before.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. }));
+        Kept { sharp: if turned { kept } else { &mesh.sharp }, joined: &mesh.joined }
     }
 }

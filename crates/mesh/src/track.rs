@@ -19,7 +19,7 @@ use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
-use crate::refine::sharp_at;
+use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Eval, Source};
 use crate::split::stored::Cut;
@@ -118,6 +118,8 @@ pub(crate) struct Track {
     corner: Vec<bool>,
     /// Texture coordinates of `level` that stay.
     pins: Vec<bool>,
+    /// Of texture coordinates, boundary half-edges of `level` that are no boundaries of regions.
+    loose: Vec<u32>,
     /// How sharp `level` is.
     creases: Option<Creases>,
     /// Of texture coordinates that have to know how faces meet on seams: the mesh's own half-edges of `level`; none at level 0.
@@ -173,6 +175,7 @@ impl Track {
             before: Counts::default(),
             corner: Vec::new(),
             pins: Vec::new(),
+            loose: Vec::new(),
             creases: None,
             beside: None,
             charted: FULL && uv && steps.iter().any(|s| !s.split.keeps_corners()),
@@ -182,14 +185,14 @@ impl Track {
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
-            track.pins = face_varying::pins(mesh, channel, &plan.rules);
+            (track.pins, track.loose) = face_varying::pins(mesh, channel, &plan.rules);
         }
         if !uv {
             track.source = holes::sources(mesh, plan.rules.boundary);
             track.listed |= !track.source.is_empty();
         }
         if !idle {
-            track.creases = Creases::of(mesh, track.base(mesh));
+            track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
         if FULL && !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
@@ -203,7 +206,7 @@ impl Track {
         let step = steps.get(self.level as usize);
         self.lone = step.map_or_else(Vec::new, |s| s.split.lone(level));
         if FULL && self.uv && plan.rules.face_varying == FaceVarying::Boundaries {
-            face_varying::pin_boundary(level, &mut self.pins);
+            face_varying::pin_boundary(level, &self.loose, &mut self.pins);
         }
         self.stage = match step {
             Some(_) if self.uv => Stage::Wide(Cursor::default()),
@@ -241,6 +244,7 @@ impl Track {
                         .take()
                         .zip(next.as_ref())
                         .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
+                    self.loose = face_varying::below(&self.loose, &level, split);
                     self.half_edges = next;
                     let level = self.half_edges.take();
                     self.begin(&level.as_ref().map_or(Level::Base(base), Owned::view), plan, steps);
@@ -316,12 +320,16 @@ impl Track {
         steps: &[Step],
         quota: &mut usize,
     ) -> Option<Option<Owned>> {
-        let sharp = if self.uv { &self.pins } else { sharp_at(steps, self.level, mesh, &self.corner) };
+        let sharp = match self.uv {
+            true => Kept { sharp: &self.pins, joined: &[] },
+            false => sharp_at(steps, self.level, mesh, &self.corner),
+        };
         if FULL && let Stage::Fair(pass, cursor) = &mut self.stage {
             let old = self.points.get_or_insert_with(|| mesh.positions.clone());
             zeroed(&mut self.new_points, old.len());
             let creases = self.creases.as_ref();
-            let tags = Tags { sharp, creases, ..Tags::new(plan.rules, Default::default()) };
+            let tags =
+                Tags { sharp: sharp.sharp, joined: sharp.joined, creases, ..Tags::new(plan.rules, Default::default()) };
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
             fairing::rules(level, *pass, tags, &mut sink);
             if sink.done() {

@@ -33,6 +33,7 @@ impl Mesh {
             colors,
             uv,
             sharp,
+            joined,
             edge_sharpness,
             vertex_sharpness,
             holes,
@@ -55,6 +56,7 @@ impl Mesh {
             put_counts(&mut out, counts);
         }
         out.flags(sharp);
+        out.flags(joined);
         for array in [edge_sharpness, vertex_sharpness, knots] {
             out.array(array);
         }
@@ -87,6 +89,7 @@ impl Mesh {
                 }),
             },
             sharp: from.flags()?,
+            joined: from.flags()?,
             edge_sharpness: from.array()?,
             vertex_sharpness: from.array()?,
             knots: from.array()?,

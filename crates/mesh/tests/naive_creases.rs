@@ -62,7 +62,7 @@ impl Marked {
         if s <= 0.0 || s >= INFINITE || decay == Decay::Uniform || others.is_empty() {
             return less(s);
         }
-        let mean = others.iter().sum::<f32>() / others.len() as f32;
+        let mean = others.iter().copied().map(f64::from).sum::<f64>() as f32 / others.len() as f32;
         (0.75 * s + 0.25 * mean - 1.0).max(0.0)
     }
 
@@ -102,7 +102,8 @@ impl Marked {
         if own > 0.0 && less(own) == 0.0 {
             ending.push(own);
         }
-        let share = f64::from((ending.iter().sum::<f32>() / ending.len() as f32).min(1.0));
+        let sum = ending.iter().copied().map(f64::from).sum::<f64>() as f32;
+        let share = f64::from((sum / ending.len() as f32).min(1.0));
         mix(&[(share, point(&parent)), (1.0 - share, point(&child))])
     }
 

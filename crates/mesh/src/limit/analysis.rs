@@ -16,8 +16,9 @@
 //! Neighbourhoods that look alike share one analysis. How many rings of faces a scheme looks at is found out: with one more
 //! the answer must be the same. Cost: some 500 us for a new kind of neighbourhood, about 2 us for the next of that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
 //! vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
-//! Where a scheme is not smooth (the first butterfly at extraordinary valences, J-splines at rims of many faces) the plane is
-//! that of its greatest eigenvalues, which need not be the one that people see.
+//! Where a scheme is not smooth inside (the first butterfly at extraordinary valences) the plane is that of its greatest
+//! eigenvalues, which need not be the one that people see. At rims whose rules do not know their number of faces (J-splines from
+//! four on, the first butterfly from five) the greatest eigenvalue across may belong to a wave, to and fro: there is no plane.
 
 use super::Mask;
 use super::eigen::{self, Rows, back};
@@ -434,7 +435,14 @@ fn eigenvectors(patch: &Patch, anchor: Anchor, s: &Rows, rings: u32, interpolati
         let sum: f64 = l.iter().sum();
         l.iter_mut().zip(&point).for_each(|(x, p)| *x -= sum * p);
     }
-    let plane = eigen::plane(&small, &point, pattern, rim);
+    let across = pattern[1].clone();
+    let mut plane = eigen::plane(&small, &point, pattern, rim);
+    if let (true, Anchor::Vertex(_), Some([along, _])) = (rim && faces > 1, anchor, &plane) {
+        let inner: Vec<usize> = around[1..faces].iter().map(|&v| index[v as usize] as usize).collect();
+        if !eigen::goes_one_way(&small, [&point, along], &across, index[own[0] as usize] as usize, &inner) {
+            plane = None;
+        }
+    }
     Some((Some(spread(&point)), plane.map(|p| p.map(|l| spread(&l)))))
 }
 

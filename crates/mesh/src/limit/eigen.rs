@@ -76,6 +76,32 @@ pub(super) fn plane(s: &Rows, point: &[f64], start: [Vec<f64>; 2], first: bool) 
     None
 }
 
+/// Whether the surface goes one way across a boundary: what S makes of the shape `start` in the end, after the parts of
+/// the limit point and of the tangent `along` are taken out, has `inner` vertices all on the same side of `own`. Both are
+/// left eigenvectors, so a shape without a part of them stays without.
+pub(super) fn goes_one_way(s: &Rows, [point, along]: [&[f64]; 2], start: &[f64], own: usize, inner: &[usize]) -> bool {
+    let mut shape = start.to_vec();
+    for _ in 0..STEPS {
+        let mut next: Vec<f64> = s.iter().map(|row| row.iter().map(|&(v, w)| w * shape[v as usize]).sum()).collect();
+        let part = dot(&next, point);
+        next.iter_mut().for_each(|x| *x -= part);
+        let part = dot(&next, along) / dot(along, along);
+        next.iter_mut().zip(along).for_each(|(x, a)| *x -= part * a);
+        let length = dot(&next, &next).sqrt();
+        if !length.is_normal() {
+            return true;
+        }
+        next.iter_mut().for_each(|x| *x /= length);
+        let change = shape.iter().zip(&next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        shape = next;
+        if change < 1e-10 {
+            break;
+        }
+    }
+    let side = |v: &usize| shape[*v] - shape[own];
+    inner.iter().all(|v| side(v) > 0.0) || inner.iter().all(|v| side(v) < 0.0)
+}
+
 /// Repeats `step` until the direction stands still.
 fn converge(step: impl Fn(&Vec<f64>) -> Option<Vec<f64>>, start: Vec<f64>) -> Option<Vec<f64>> {
     let mut l = start;

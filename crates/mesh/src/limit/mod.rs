@@ -180,7 +180,7 @@ impl Ring {
         *fading = false;
         if let Some(marks) = marks {
             let s = marks.vertex(v);
-            *fading = s > 0.0 && s < INFINITE;
+            *fading = s > 0.0 && s < INFINITE || marks.beyond(v).is_some();
             for (i, &h) in spokes.iter().enumerate() {
                 let s = marks.along(c, h);
                 creases.extend((s >= INFINITE).then_some(i as u32));

@@ -12,6 +12,7 @@
 //! level, once.
 
 use crate::connect::UNMATCHED;
+use crate::copies::Beyond;
 use crate::crease::Creases;
 use crate::scheme::Tags;
 use crate::topology::{Connectivity, Topology, is_boundary};
@@ -40,6 +41,8 @@ pub(super) struct Seen {
     /// How sharp each corner's half-edge is, and each vertex; empty if nothing is.
     edge_sharpness: Vec<f32>,
     vertex_sharpness: Vec<f32>,
+    /// What the vertices' other copies see, by their places in the list.
+    beyond: Vec<Beyond>,
     /// Faces, sharp vertices, knots and sharpness in one list: equal for neighbourhoods that look alike.
     pub key: Vec<u32>,
     /// The half-edge by which each vertex was first met, which leaves it.
@@ -112,6 +115,7 @@ impl Seen {
         }
         self.edge_sharpness.clear();
         self.vertex_sharpness.clear();
+        self.beyond.clear();
         if let Some(creases) = creases {
             // A boundary is one without being marked.
             let along = |&h: &u32| if is_boundary(c.twin(h)) { 0.0 } else { creases.along(c, h) };
@@ -122,6 +126,12 @@ impl Seen {
                     list.clear();
                 }
                 self.key.extend(list.iter().map(|s| s.to_bits()));
+            }
+            for (&v, local) in self.vertices.iter().zip(0..) {
+                let Some(beyond) = creases.beyond(v) else { continue };
+                self.key.push(local);
+                self.key.extend(beyond.edges.iter().map(|(s, _)| s.to_bits()));
+                self.beyond.push(Beyond { vertex: local, ..beyond.clone() });
             }
         }
     }
@@ -210,15 +220,22 @@ impl Seen {
         }
         let (topology, class) = Topology::assemble(self.offsets.clone(), &self.corners, self.vertices.len(), &mate);
         let back = |c: &u32| *c as usize;
-        let marked = !self.edge_sharpness.is_empty() || !self.vertex_sharpness.is_empty();
+        let marked = !self.edge_sharpness.is_empty() || !self.vertex_sharpness.is_empty() || !self.beyond.is_empty();
         let edge = |h: u32| self.edge_sharpness.get(h as usize).copied().unwrap_or(0.0);
         let vertex = |v: u32| self.vertex_sharpness.get(back(&class[v as usize])).copied().unwrap_or(0.0);
-        let creases = if marked { Creases::marked_by(&topology, edge, vertex) } else { None };
+        // Vertices that the patch has twice have it twice.
+        let listed = |(v, c): (u32, &u32)| {
+            let found = self.beyond.binary_search_by_key(c, |b| b.vertex).ok()?;
+            Some(Beyond { vertex: v, ..self.beyond[found].clone() })
+        };
+        let beyond = (0..).zip(&class).filter_map(listed).collect();
+        let creases = if marked { Creases::marked_by(&topology, edge, vertex, beyond) } else { None };
         Patch {
             creases,
             topology,
             rings: class.iter().map(|c| self.rings[back(c)]).collect(),
             sharp: class.iter().map(|c| self.sharp[back(c)]).collect(),
+            joined: class.iter().map(|c| !self.sharp[back(c)]).collect(),
             vertices: class.iter().map(|c| self.vertices[back(c)]).collect(),
             class,
             knots: self.knots.clone(),
@@ -239,6 +256,8 @@ pub(super) struct Patch {
     pub rings: Vec<u32>,
     /// Whether each stays where it is.
     pub sharp: Vec<bool>,
+    /// Whether each is no corner, though one face of the patch alone has it: the others, as the level has said which are.
+    pub joined: Vec<bool>,
     /// Knot intervals, as of a mesh; empty if all are 1.
     pub knots: Vec<f32>,
     /// How sharp its edges and vertices are.
@@ -250,6 +269,13 @@ pub(super) struct Patch {
 impl Patch {
     /// The rules' tags for this patch.
     pub fn tags<'a>(&'a self, tags: Tags<'a>, lone: &'a [u32]) -> Tags<'a> {
-        Tags { sharp: &self.sharp, knots: &self.knots, creases: self.creases.as_ref(), lone, ..tags }
+        Tags {
+            sharp: &self.sharp,
+            joined: &self.joined,
+            knots: &self.knots,
+            creases: self.creases.as_ref(),
+            lone,
+            ..tags
+        }
     }
 }

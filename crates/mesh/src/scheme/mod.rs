@@ -254,6 +254,8 @@ pub struct Tags<'a> {
     pub step: u32,
     /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
     pub sharp: &'a [bool],
+    /// Vertices of one face that are no corners, as in [`crate::Mesh::joined`].
+    pub joined: &'a [bool],
     /// How sharp edges and vertices of the level are; none if none is marked.
     pub creases: Option<&'a Creases>,
     /// Corners that the split treats by name, by their half-edges: of the dual split those with two images, children from
@@ -271,7 +273,7 @@ pub struct Tags<'a> {
 impl Tags<'_> {
     /// Tags of a mesh without marks, at level 0.
     pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        Tags { rules, step: 0, sharp: &[], creases: None, lone: &[], knots: &[], size: 0.0, params }
+        Tags { rules, step: 0, sharp: &[], joined: &[], creases: None, lone: &[], knots: &[], size: 0.0, params }
     }
 
     /// Whether `v`, which starts its turn at `start`, is kept.
@@ -287,7 +289,8 @@ impl Tags<'_> {
             return false;
         }
         let start = c.vertex_half_edge(v);
-        is_boundary(c.twin(start)) && is_boundary(c.twin(c.prev(start)))
+        let lone = is_boundary(c.twin(start)) && is_boundary(c.twin(c.prev(start)));
+        lone && !self.joined.get(v as usize).is_some_and(|&joined| joined)
     }
 }
 
