@@ -17,7 +17,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use limn_mesh::{Counts, Stats, refine::grouped};
+use limn_mesh::{Counts, Honours, Stats, refine::grouped};
 
 use crate::build::Remark;
 use crate::camera::Bounds;
@@ -82,7 +82,19 @@ impl Document {
         }
         if let Some(scheme) = state.plan().ignores_marks(&state.built.mesh) {
             let name = scheme.info.name;
-            let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");
+            let text = match scheme.honours {
+                Honours { creases: true, .. } => {
+                    format!(
+                        "of creases and corners, {name} honours infinitely sharp ones only; Catmull–Clark and Loop honour all"
+                    )
+                }
+                Honours { corners: true, .. } => {
+                    format!(
+                        "of creases and corners, {name} honours infinitely sharp corners only; Catmull–Clark and Loop honour all"
+                    )
+                }
+                _ => format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do"),
+            };
             remarks.push(Remark::new(&text, false));
         }
         remarks

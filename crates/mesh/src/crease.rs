@@ -203,6 +203,12 @@ impl Creases {
         self.flags[v as usize] > 1
     }
 
+    /// Whether `v` is an end of a sharp edge.
+    #[inline(always)]
+    pub(crate) fn is_on_crease(&self, v: u32) -> bool {
+        self.flags[v as usize] & EDGES != 0
+    }
+
     /// Whether `v` itself is infinitely sharp.
     #[inline(always)]
     pub(crate) fn keeps(&self, v: u32) -> bool {

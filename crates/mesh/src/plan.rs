@@ -164,10 +164,14 @@ impl Plan {
 
     /// The first scheme of the plan to which marks of `mesh` mean nothing; at level 0 the one that would come first.
     pub fn ignores_marks(&self, mesh: &Mesh) -> Option<&'static Entry> {
-        let semi = mesh.vertex_sharpness.iter().any(|&s| s > 0.0 && s < INFINITE);
-        let creases = semi || !mesh.edge_sharpness.is_empty();
-        let corners = !mesh.vertex_sharpness.is_empty();
-        let ignores = |e: &&'static Entry| creases && !e.honours.creases || corners && !e.honours.corners;
+        let both = || mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness);
+        let semi_sharp = both().any(|&s| s > 0.0 && s < INFINITE);
+        let creases = mesh.edge_sharpness.iter().any(|&s| s >= INFINITE);
+        let corners = mesh.vertex_sharpness.iter().any(|&s| s >= INFINITE);
+        let ignores = |e: &&'static Entry| {
+            let honours = &e.honours;
+            semi_sharp && !honours.semi_sharp || creases && !honours.creases || corners && !honours.corners
+        };
         (0..self.level.max(1)).map(|step| self.run(step).scheme).find(ignores)
     }
 

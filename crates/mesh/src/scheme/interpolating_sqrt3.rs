@@ -24,7 +24,7 @@
 use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary, is_rim};
+use crate::topology::{Connectivity, is_boundary};
 use std::f64::consts::PI;
 
 /// See the module.
@@ -50,7 +50,7 @@ impl Scheme for InterpolatingSqrt3 {
         sink.pass(old, faces, |f, row| {
             let corners = c.face_half_edges(f);
             let on_boundary = |h: &u32| is_boundary(c.twin(*h));
-            if let Some(h) = corners.clone().find(|&h| trisect && is_rim(c, h)) {
+            if let Some(h) = corners.clone().find(|&h| trisect && c.is_rim(h)) {
                 return third(c, h, false, tags, row);
             }
             match corners.clone().find(on_boundary) {

@@ -51,6 +51,7 @@ pub use tri_to_quad::TriToQuad;
 pub(crate) use loop_::weight as loop_weight;
 
 use crate::FULL;
+use crate::apart;
 use crate::crease::{self, Creases};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Either, Eval, Record, Row, Sink, TakeRow};
@@ -283,11 +284,7 @@ impl Tags<'_> {
         if FULL && self.creases.is_some_and(|creases| creases.keeps(v)) {
             return true;
         }
-        if self.rules.boundary != Boundary::EdgeAndCorner {
-            return false;
-        }
-        let start = c.vertex_half_edge(v);
-        is_boundary(c.twin(start)) && is_boundary(c.twin(c.prev(start)))
+        c.is_pinned(v) || (self.rules.boundary == Boundary::EdgeAndCorner && c.is_tip(v))
     }
 }
 
@@ -299,8 +296,8 @@ pub trait Scheme: 'static {
     /// without the feature `full`.
     const COMMON: bool = false;
 
-    /// Whether sharp and semi-sharp edges and vertices mean to it what [`crate::crease`] says, or nothing is smoothed anyway.
-    const CREASES: bool = false;
+    /// How it takes sharp edges and vertices.
+    const CREASES: Creasing = Creasing::None;
 
     /// How the limit of its vertices is found.
     const LIMIT: LimitRule = LimitRule::Analysis;
@@ -312,13 +309,39 @@ pub trait Scheme: 'static {
 type EvalFn = fn(&Level<'_>, Split, Tags<'_>, &mut Eval<'_>);
 type RecordFn = fn(&Level<'_>, Split, Tags<'_>, &mut Record<'_>);
 
+/// How a scheme takes sharp edges and vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Creasing {
+    /// Not at all.
+    None,
+    /// Its rules ask [`crate::crease`], or it smooths nothing anyway.
+    Rules,
+    /// As the rim of a mesh that is cut there ([`crate::apart`]), semi-sharp ones as far as they are sharp.
+    Apart,
+    /// The same, but only what is infinitely sharp.
+    ApartForEver,
+}
+
+impl Creasing {
+    const fn is_apart(self) -> bool {
+        FULL && matches!(self, Creasing::Apart | Creasing::ApartForEver)
+    }
+}
+
 /// Which marks of a mesh mean something to a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Honours {
-    /// Sharp and semi-sharp edges, and semi-sharp vertices.
+    /// Infinitely sharp edges.
     pub creases: bool,
+    /// Semi-sharp edges and vertices.
+    pub semi_sharp: bool,
     /// Infinitely sharp vertices: they stay where they are.
     pub corners: bool,
+}
+
+impl Honours {
+    /// Everything.
+    const ALL: Honours = Honours { creases: true, semi_sharp: true, corners: true };
 }
 
 /// A scheme in the registry: its facts, and its rules compiled for every sink.
@@ -350,7 +373,11 @@ const fn entry<S: Scheme>() -> Entry {
         if S::COMMON || FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
     let record: RecordFn = if FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
     let corners = !matches!(S::INFO.family, Family::Dual | Family::MidEdge);
-    let honours = Honours { creases: S::CREASES, corners };
+    let honours = Honours {
+        creases: !matches!(S::CREASES, Creasing::None),
+        semi_sharp: matches!(S::CREASES, Creasing::Rules | Creasing::Apart),
+        corners,
+    };
     // Papers are told about by the build that has their rules.
     let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
     Entry { info, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
@@ -359,6 +386,9 @@ const fn entry<S: Scheme>() -> Entry {
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {
     match (level, S::INFO.accepts) {
         (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
+        _ if tags.creases.is_some() && S::CREASES.is_apart() => {
+            seldom::<S>(level, split, tags, &mut Either::Eval(sink))
+        }
         // What a scheme's own split stores needs no rules for the others.
         (level, _) if !matches!(S::INFO.family, Family::Primal | Family::Mixed) => {
             seldom::<S>(level, split, tags, &mut Either::Eval(sink));
@@ -381,6 +411,7 @@ fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut
 /// where the scheme makes such.
 fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
+        _ if FULL && apart::rules::<S>(level, split, tags, sink) => {}
         (level, Family::Primal | Family::Quads) => S::rules(level, split, tags, sink),
         (Level::Base(c), _) => S::rules(*c, split, tags, sink),
         _ => unreachable!("stored levels come of stored levels"),
@@ -460,6 +491,19 @@ fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>, row: &mut impl
         row.vertex(v, 0.75);
     }
     true
+}
+
+/// The neighbours of boundary half-edge `h` along its curve, the vertex before its origin and the one behind its target; none
+/// where the curve ends: at what is sharp, and at a dart.
+#[inline(never)]
+fn along_curve<C: Connectivity>(c: &C, h: u32, tags: Tags<'_>) -> [Option<u32>; 2] {
+    let (a, n) = (c.origin(h), c.next(h));
+    let before = || c.turn_from(h, |_| {}).map(|arriving| c.origin(arriving));
+    let after = || {
+        let spoke = c.first_spoke(n);
+        is_boundary(c.twin(spoke)).then(|| c.origin(c.next(spoke)))
+    };
+    [if tags.is_sharp(c, a) { None } else { before() }, if tags.is_sharp(c, c.origin(n)) { None } else { after() }]
 }
 
 /// States the rule of `v` with its marks; `smooth` states the scheme's own, of inner vertices.

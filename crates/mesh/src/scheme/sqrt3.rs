@@ -14,7 +14,7 @@ use super::{Accepts, Family, Info, Scheme, Tags};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary, is_rim};
+use crate::topology::{Connectivity, is_boundary};
 
 /// See the module.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ impl Scheme for Sqrt3 {
         let (old, faces) = (c.vertices(), c.faces());
         sink.pass(old, faces, |f, row| {
             let corners = c.face_half_edges(f);
-            if let Some(h) = corners.clone().find(|&h| trisect && is_rim(c, h)) {
+            if let Some(h) = corners.clone().find(|&h| trisect && c.is_rim(h)) {
                 return third(c, h, false, tags, row);
             }
             corners.for_each(|h| row.vertex(c.origin(h), 1.0 / 3.0));
