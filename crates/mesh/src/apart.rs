@@ -31,8 +31,8 @@
 use crate::crease::Creases;
 use crate::marks::INFINITE;
 use crate::scheme::{Creasing, Scheme, Tags};
-use crate::sink::{Either, Row, Sink};
-use crate::split::{Level, Split};
+use crate::sink::{Row, Sink};
+use crate::split::Split;
 use crate::topology::{BOUNDARY, Connectivity, is_boundary};
 use std::cell::Cell;
 use std::ops::Range;
@@ -70,11 +70,14 @@ impl<'a, C: Connectivity> Apart<'a, C> {
         self.cuts(self.creases.edge(self.whole.edge(h)))
     }
 
-    /// How many sharp edges `v` has, its boundary edges among them.
+    /// How many sharp edges `v` has, its boundary edges among them; none if all are of a boundary.
+    #[inline(always)]
     fn sharp_edges(&self, v: u32) -> u32 {
-        if !self.creases.is_on_crease(v) {
-            return 0;
-        }
+        if self.creases.is_on_crease(v) { self.count(v) } else { 0 }
+    }
+
+    #[inline(never)]
+    fn count(&self, v: u32) -> u32 {
         let mut count = 0;
         let arriving = self.whole.turn(v, |h| count += u32::from(is_boundary(self.whole.twin(h)) || self.is_cut(h)));
         count + u32::from(arriving.is_some())
@@ -82,51 +85,66 @@ impl<'a, C: Connectivity> Apart<'a, C> {
 }
 
 impl<C: Connectivity> Connectivity for Apart<'_, C> {
+    #[inline(always)]
     fn vertices(&self) -> u32 {
         self.whole.vertices()
     }
+    #[inline(always)]
     fn edges(&self) -> u32 {
         self.whole.edges()
     }
+    #[inline(always)]
     fn faces(&self) -> u32 {
         self.whole.faces()
     }
+    #[inline(always)]
     fn half_edges(&self) -> u32 {
         self.whole.half_edges()
     }
+    #[inline(always)]
     fn boundary_half_edges(&self) -> u32 {
         self.whole.boundary_half_edges()
     }
+    #[inline(always)]
     fn boundary_half_edge(&self, rank: u32) -> u32 {
         self.whole.boundary_half_edge(rank)
     }
+    #[inline(always)]
     fn face_half_edges(&self, f: u32) -> Range<u32> {
         self.whole.face_half_edges(f)
     }
+    #[inline(always)]
     fn face(&self, h: u32) -> u32 {
         self.whole.face(h)
     }
+    #[inline(always)]
     fn next(&self, h: u32) -> u32 {
         self.whole.next(h)
     }
+    #[inline(always)]
     fn prev(&self, h: u32) -> u32 {
         self.whole.prev(h)
     }
     /// Across a cut: a boundary of no rank.
+    #[inline(always)]
     fn twin(&self, h: u32) -> u32 {
         let twin = self.whole.twin(h);
         if !is_boundary(twin) && self.is_cut(h) { BOUNDARY } else { twin }
     }
+    #[inline(always)]
     fn origin(&self, h: u32) -> u32 {
         self.whole.origin(h)
     }
+    #[inline(always)]
     fn edge(&self, h: u32) -> u32 {
         self.whole.edge(h)
     }
+    #[inline(always)]
     fn vertex_half_edge(&self, v: u32) -> u32 {
         let start = self.whole.vertex_half_edge(v);
         if self.creases.is_on_crease(v) { self.first_spoke(start) } else { start }
     }
+    #[inline(always)]
     fn edge_half_edge(&self, e: u32) -> u32 {
         self.whole.edge_half_edge(e)
     }
@@ -157,7 +175,7 @@ impl<C: Connectivity> Connectivity for Apart<'_, C> {
     fn is_pinned(&self, v: u32) -> bool {
         self.cuts(self.creases.vertex(v)) || self.sharp_edges(v) > 2
     }
-    #[inline(never)]
+    #[inline(always)]
     fn turn_from(&self, start: u32, mut visit: impl FnMut(u32)) -> Option<u32> {
         let parted = self.sharp_edges(self.whole.origin(start)) > 1;
         let mut h = start;
@@ -215,17 +233,14 @@ impl<C: Connectivity, K: Sink> Sink for Blended<'_, C, K> {
     }
 }
 
-/// States the rules of `S` on `level` cut along its creases; false if there are none, or they mean nothing to it.
-pub(crate) fn rules<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) -> bool {
-    let Some(creases) = tags.creases else { return false };
-    let tags = Tags { creases: None, ..tags };
+/// States the rules of `S` on `c` cut along its creases; false if there are none, or they mean nothing to it.
+#[inline(always)]
+pub(crate) fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) -> bool {
+    let (Some(creases), true) = (tags.creases, S::CREASES.is_apart()) else { return false };
+    let (level, tags) = (Apart::for_ever(c, creases), Tags { creases: None, ..tags });
     match S::CREASES {
-        Creasing::Apart => {
-            let level = Apart::for_ever(level, creases);
-            S::rules(&level, split, tags, &mut Blended { level: &level, sink });
-        }
-        Creasing::ApartForEver => S::rules(&Apart::for_ever(level, creases), split, tags, sink),
-        Creasing::None | Creasing::Rules => return false,
+        Creasing::Apart => S::rules(&level, split, tags, &mut Blended { level: &level, sink }),
+        _ => S::rules(&level, split, tags, sink),
     }
     true
 }

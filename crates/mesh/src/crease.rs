@@ -51,6 +51,8 @@ const EDGES: u8 = 3;
 const SHARP: u8 = 4;
 /// An infinitely sharp vertex.
 const KEPT: u8 = 8;
+/// An end of a semi-sharp edge.
+const FADES: u8 = 16;
 
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,8 +84,11 @@ impl Creases {
         if !mesh.edge_sharpness.is_empty() {
             for e in 0..t.edges() {
                 let h = t.edge_half_edge(e);
-                out.sharpen(t, h, mesh.edge_sharpness[own.edge(h) as usize]);
+                if !is_boundary(t.twin(h)) {
+                    out.sharpen(t, h, mesh.edge_sharpness[own.edge(h) as usize]);
+                }
             }
+            out.meet_boundary(t);
         }
         if !mesh.vertex_sharpness.is_empty() {
             let of = |v: u32| mesh.vertex_sharpness[own.origin(t.vertex_half_edge(v)) as usize];
@@ -97,8 +102,11 @@ impl Creases {
         let mut out = Creases::with_room(t);
         for e in 0..t.edges() {
             let h = t.edge_half_edge(e);
-            out.sharpen(t, h, edge(h));
+            if !is_boundary(t.twin(h)) {
+                out.sharpen(t, h, edge(h));
+            }
         }
+        out.meet_boundary(t);
         out.stay((0..t.vertices()).map(vertex).collect());
         out.some()
     }
@@ -107,18 +115,26 @@ impl Creases {
         Creases { edges: vec![0.0; c.edges() as usize], flags: vec![0; c.vertices() as usize], ..Creases::default() }
     }
 
-    /// Notes the sharpness of the edge of `h`.
+    /// Notes the sharpness of the edge of `h`, which is not on a boundary.
     fn sharpen(&mut self, c: &impl Connectivity, h: u32, s: f32) {
-        if s <= 0.0 || is_boundary(c.twin(h)) {
+        if s <= 0.0 {
             return;
         }
         let e = c.edge(h);
         self.edges[e as usize] = s;
         self.sharp.push(e);
         for v in [c.origin(h), c.origin(c.next(h))] {
-            let more = if is_boundary(c.twin(c.vertex_half_edge(v))) { 3 } else { 1 };
             let flag = &mut self.flags[v as usize];
-            *flag = (*flag & !EDGES) | ((*flag & EDGES) + more).min(3);
+            *flag += u8::from(*flag & EDGES < EDGES);
+            *flag |= if s < INFINITE { FADES } else { 0 };
+        }
+    }
+
+    /// Notes where sharp edges meet the boundary. Cost: its length.
+    fn meet_boundary(&mut self, c: &impl Connectivity) {
+        for r in 0..if self.sharp.is_empty() { 0 } else { c.boundary_half_edges() } {
+            let flag = &mut self.flags[c.origin(c.boundary_half_edge(r)) as usize];
+            *flag |= if *flag & EDGES > 0 { EDGES } else { 0 };
         }
     }
 
@@ -162,6 +178,7 @@ impl Creases {
                     out.sharpen(child, places.slot(h, part), left);
                 }
             }
+            out.meet_boundary(child);
             out.stay(self.vertices.iter().map(|&s| less(s)).collect());
             return out.some();
         }
@@ -177,6 +194,7 @@ impl Creases {
                 out.sharpen(child, half, self.half(parent, parent.origin(end), s, decay));
             }
         }
+        out.meet_boundary(child);
         out.stay(self.vertices.iter().map(|&s| if split == Split::Poke { s } else { less(s) }).collect());
         out.some()
     }
@@ -188,6 +206,7 @@ impl Creases {
     }
 
     /// The sharpness of the edge of `h`, [`INFINITE`] on a boundary.
+    #[inline(always)]
     pub fn along(&self, c: &impl Connectivity, h: u32) -> f32 {
         if is_boundary(c.twin(h)) { INFINITE } else { self.edges[c.edge(h) as usize] }
     }
@@ -200,7 +219,7 @@ impl Creases {
     /// Whether rules for vertices without marks do not hold for `v`.
     #[inline(always)]
     pub(crate) fn marked(&self, v: u32) -> bool {
-        self.flags[v as usize] > 1
+        self.flags[v as usize] & !FADES > 1
     }
 
     /// Whether `v` is an end of a sharp edge.
@@ -216,10 +235,13 @@ impl Creases {
     }
 
     /// The sharpness at `v` of the child of an edge of sharpness `s`.
+    #[inline(always)]
     fn half(&self, c: &impl Connectivity, v: u32, s: f32, decay: Decay) -> f32 {
-        if decay == Decay::Uniform || s >= INFINITE {
-            return less(s);
-        }
+        if decay == Decay::Uniform || s >= INFINITE { less(s) } else { self.chaikin_half(c, v, s) }
+    }
+
+    #[inline(never)]
+    fn chaikin_half(&self, c: &impl Connectivity, v: u32, s: f32) -> f32 {
         let (mut sum, mut count) = (0.0, 0);
         spokes(c, v, |h, _| {
             let s = self.along(c, h);
@@ -250,7 +272,7 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
     match tags.creases {
         _ if tags.is_sharp(c, v) => At::Corner,
         Some(creases) if creases.vertex(v) > 0.0 => At::Corner,
-        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v, |s| s).at(),
+        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v).at(),
         _ if is_boundary(c.twin(c.vertex_half_edge(v))) => {
             let mut faces = 0;
             c.turn(v, |_| faces += 1);
@@ -264,21 +286,38 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
 #[inline(never)]
 pub(crate) fn ends<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Option<[u32; 2]> {
     let creases = tags.creases.filter(|creases| creases.vertex(v) <= 0.0)?;
-    let found = creases.survey(c, v, |s| s);
-    (found.count == 2).then_some(found.ends)
+    let found = creases.survey(c, v);
+    (found.count == 2).then_some([found.sharp[0].1, found.sharp[1].1])
 }
 
-/// The sharp edges at a vertex: how many, the first two by place and by the vertices that they lead to; and how many of them
-/// are semi-sharp, with the sum of their sharpness.
+/// The sharp edges at a vertex: how many, the first two by place and the first few by sharpness and by the vertices that
+/// they lead to; and how many of them are semi-sharp, with the sum of their sharpness.
 struct Survey {
     count: usize,
     places: [u32; 2],
-    ends: [u32; 2],
+    sharp: [(f32, u32); FEW],
     semi: u32,
     sum: f32,
 }
 
+/// So many sharp edges at a vertex are noted: more are rare, and turned through again.
+const FEW: usize = 6;
+
 impl Survey {
+    #[inline(always)]
+    fn add(&mut self, s: f32, end: u32, place: u32) {
+        if let Some(sharp) = self.sharp.get_mut(self.count) {
+            *sharp = (s, end);
+        }
+        if let Some(at) = self.places.get_mut(self.count) {
+            *at = place;
+        }
+        self.count += 1;
+        if s < INFINITE {
+            (self.semi, self.sum) = (self.semi + 1, self.sum + s);
+        }
+    }
+
     fn at(&self) -> At {
         match self.count {
             0 => At::Smooth,
@@ -290,23 +329,21 @@ impl Survey {
 }
 
 impl Creases {
-    /// The edges at `v`, as sharp as `of` says of what they are.
-    fn survey<C: Connectivity>(&self, c: &C, v: u32, mut of: impl FnMut(f32) -> f32) -> Survey {
-        let mut found = Survey { count: 0, places: [0; 2], ends: [v; 2], semi: 0, sum: 0.0 };
+    /// The edges at `v`.
+    #[inline(always)]
+    fn survey<C: Connectivity>(&self, c: &C, v: u32) -> Survey {
+        let mut found = Survey { count: 0, places: [0; 2], sharp: [(0.0, v); FEW], semi: 0, sum: 0.0 };
         let mut place = 0;
-        spokes(c, v, |h, other| {
-            let s = of(self.along(c, h));
+        let arriving = c.turn(v, |h| {
+            let s = self.along(c, h);
             if s > 0.0 {
-                if found.count < 2 {
-                    (found.places[found.count], found.ends[found.count]) = (place, other);
-                }
-                found.count += 1;
-                if s < INFINITE {
-                    (found.semi, found.sum) = (found.semi + 1, found.sum + s);
-                }
+                found.add(s, c.origin(c.next(h)), place);
             }
             place += 1;
         });
+        if let Some(arriving) = arriving {
+            found.add(INFINITE, c.origin(arriving), place);
+        }
         found
     }
 }
@@ -338,28 +375,45 @@ fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
         return parts;
     }
     let own = creases.vertex(v);
-    let now = creases.survey(c, v, |s| s);
+    // Where nothing ends and it is clear what holds.
+    let flag = creases.flags[v as usize];
+    if own <= 0.0 && flag & (EDGES | FADES) == EDGES {
+        return parts;
+    }
+    let now = creases.survey(c, v);
     let (before, mut after) = (part(own > 0.0, now.count), part(own > 0.0, now.count));
-    parts.ends = now.ends;
+    parts.ends = [now.sharp[0].1, now.sharp[1].1];
     let (mut ending, mut count) = (0.0, 0);
     if now.semi > 0 || own > 0.0 {
         // What ends within this step.
         if own > 0.0 && less(own) == 0.0 {
             (ending, count) = (own, 1);
         }
-        let next = creases.survey(c, v, |s| {
+        let (mut lasting, mut ends) = (0, [v; 2]);
+        let mut take = |s: f32, other: u32| {
             let left = match tags.rules.decay {
-                Decay::Chaikin if s > 0.0 && s < INFINITE => chaikin(s, now.sum, now.semi),
+                Decay::Chaikin if s < INFINITE => chaikin(s, now.sum, now.semi),
                 _ => less(s),
             };
-            if s > 0.0 && left == 0.0 {
+            if left == 0.0 {
                 (ending, count) = (ending + s, count + 1);
+                return;
             }
-            left
-        });
-        after = part(less(own) > 0.0, next.count);
+            if let Some(end) = ends.get_mut(lasting) {
+                *end = other;
+            }
+            lasting += 1;
+        };
+        match now.sharp.get(..now.count) {
+            Some(sharp) => sharp.iter().for_each(|&(s, other)| take(s, other)),
+            None => spokes(c, v, |h, other| match creases.along(c, h) {
+                s if s > 0.0 => take(s, other),
+                _ => {}
+            }),
+        }
+        after = part(less(own) > 0.0, lasting);
         if after == 1 && before == 2 {
-            parts.ends = next.ends;
+            parts.ends = ends;
         }
     }
     parts.share[2] = 0.0;
@@ -416,7 +470,7 @@ pub(crate) fn edge_point<C: Connectivity, R: Row>(
 }
 
 /// By how much the edge of `h`, not on a boundary, is a crease in this step.
-#[inline(never)]
+#[inline(always)]
 fn edge_share<C: Connectivity>(c: &C, h: u32, tags: &Tags<'_>) -> f64 {
     let Some(creases) = tags.creases else { return 0.0 };
     let s = creases.along(c, h);

@@ -323,7 +323,8 @@ pub enum Creasing {
 }
 
 impl Creasing {
-    const fn is_apart(self) -> bool {
+    /// Whether rules of rims are taken for creases.
+    pub(crate) const fn is_apart(self) -> bool {
         FULL && matches!(self, Creasing::Apart | Creasing::ApartForEver)
     }
 }
@@ -386,15 +387,12 @@ const fn entry<S: Scheme>() -> Entry {
 fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Eval<'_>) {
     match (level, S::INFO.accepts) {
         (Level::Base(c), _) if S::COMMON => S::rules(*c, split, tags, sink),
-        _ if tags.creases.is_some() && S::CREASES.is_apart() => {
-            seldom::<S>(level, split, tags, &mut Either::Eval(sink))
-        }
         // What a scheme's own split stores needs no rules for the others.
         (level, _) if !matches!(S::INFO.family, Family::Primal | Family::Mixed) => {
             seldom::<S>(level, split, tags, &mut Either::Eval(sink));
         }
-        (Level::Quads(c), Accepts::Polygons | Accepts::Both) => S::rules(*c, split, tags, sink),
-        (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => S::rules(*c, split, tags, sink),
+        (Level::Quads(c), Accepts::Polygons | Accepts::Both) => rules::<S, _, _>(*c, split, tags, sink),
+        (Level::Triangles(c), Accepts::Triangles | Accepts::Both) => rules::<S, _, _>(*c, split, tags, sink),
         _ if S::COMMON => unreachable!("a scheme's own split made the level"),
         _ => seldom::<S>(level, split, tags, &mut Either::Eval(sink)),
     }
@@ -411,10 +409,17 @@ fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut
 /// where the scheme makes such.
 fn seldom<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Either<'_, '_>) {
     match (level, S::INFO.family) {
-        _ if FULL && apart::rules::<S>(level, split, tags, sink) => {}
-        (level, Family::Primal | Family::Quads) => S::rules(level, split, tags, sink),
-        (Level::Base(c), _) => S::rules(*c, split, tags, sink),
+        (level, Family::Primal | Family::Quads) => rules::<S, _, _>(level, split, tags, sink),
+        (Level::Base(c), _) => rules::<S, _, _>(*c, split, tags, sink),
         _ => unreachable!("stored levels come of stored levels"),
+    }
+}
+
+/// States the rules on `c`, or on `c` cut along its creases.
+#[inline(always)]
+fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
+    if !FULL || !apart::rules::<S, C, K>(c, split, tags, sink) {
+        S::rules(c, split, tags, sink);
     }
 }
 
