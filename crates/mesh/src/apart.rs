@@ -46,12 +46,20 @@ pub(crate) struct Apart<'a, C> {
     over: Cell<f32>,
     /// The least sharpness below 1 that was found to be cut; 1 if none was.
     met: Cell<f32>,
+    /// Whether edges are turned where they are not cut. Then none is cut at an inner vertex of two faces, which has nothing
+    /// to be turned into.
+    turns: bool,
 }
 
 impl<'a, C: Connectivity> Apart<'a, C> {
     /// Cut wherever it is infinitely sharp.
-    pub fn for_ever(whole: &'a C, creases: &'a Creases) -> Apart<'a, C> {
-        Apart { whole, creases, over: Cell::new(INFINITE.next_down()), met: Cell::new(1.0) }
+    fn new(whole: &'a C, creases: &'a Creases, turns: bool) -> Apart<'a, C> {
+        Apart { whole, creases, over: Cell::new(INFINITE.next_down()), met: Cell::new(1.0), turns }
+    }
+
+    /// The same, as splits see it that turn all other edges.
+    pub fn turned(whole: &'a C, creases: &'a Creases) -> Apart<'a, C> {
+        Apart::new(whole, creases, true)
     }
 
     /// Whether what is so sharp is cut.
@@ -67,7 +75,31 @@ impl<'a, C: Connectivity> Apart<'a, C> {
     /// Whether the edge of `h`, not on a boundary, is cut.
     #[inline(always)]
     pub fn is_cut(&self, h: u32) -> bool {
-        self.cuts(self.creases.edge(self.whole.edge(h)))
+        self.cuts(self.creases.edge(self.whole.edge(h))) && !(self.turns && self.is_beside_digon(h))
+    }
+
+    /// Whether an end of `h` is an inner vertex of two faces.
+    #[inline(never)]
+    fn is_beside_digon(&self, h: u32) -> bool {
+        let c = self.whole;
+        [h, c.next(h)].into_iter().any(|h| {
+            let mut faces = 0;
+            c.turn(c.origin(h), |_| faces += 1).is_none() && faces == 2
+        })
+    }
+
+    /// Whether `v` is the end of one sharp edge.
+    pub fn is_dart(&self, v: u32) -> bool {
+        self.sharp_edges(v) == 1
+    }
+
+    /// Where the turns around `v` start, one for each part that cuts leave of its neighbourhood.
+    pub fn starts(&self, v: u32) -> impl Iterator<Item = u32> {
+        let first = self.vertex_half_edge(v);
+        std::iter::successors(Some(first), move |&start| {
+            let after = self.whole.twin(self.turn_from(start, |_| {})?);
+            (!is_boundary(after) && after != first).then_some(after)
+        })
     }
 
     /// How many sharp edges `v` has, its boundary edges among them; none if all are of a boundary.
@@ -237,7 +269,7 @@ impl<C: Connectivity, K: Sink> Sink for Blended<'_, C, K> {
 #[inline(always)]
 pub(crate) fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) -> bool {
     let (Some(creases), true) = (tags.creases, S::CREASES.is_apart()) else { return false };
-    let (level, tags) = (Apart::for_ever(c, creases), Tags { creases: None, ..tags });
+    let (level, tags) = (Apart::new(c, creases, S::CREASES == Creasing::ApartForEver), Tags { creases: None, ..tags });
     match S::CREASES {
         Creasing::Apart => S::rules(&level, split, tags, &mut Blended { level: &level, sink }),
         _ => S::rules(&level, split, tags, sink),

@@ -24,11 +24,12 @@
 //! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.
 
 use crate::FULL;
+use crate::apart::Apart;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::scheme::{Decay, Tags};
 use crate::sink::Row;
-use crate::split::{Level, Split, mixed, n_way};
+use crate::split::{Level, Split, mixed, n_way, stored};
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// How sharp a level is. Edges by their ids; boundary edges are not in it, because they always are.
@@ -164,6 +165,19 @@ impl Creases {
             Split::Poke => Some([3 * h; 2]),
             Split::Sqrt3 { .. } | Split::Dual { .. } | Split::MidEdge { .. } | Split::NWay { .. } => None,
         };
+        if let Split::Sqrt3 { trisect } = split {
+            let apart = Apart::turned(parent, self);
+            for &e in &self.sharp {
+                let h = parent.edge_half_edge(e);
+                if apart.is_cut(h) {
+                    let thirds = stored::sqrt3_thirds(parent, h, trisect);
+                    thirds.into_iter().for_each(|third| out.sharpen(child, third, self.edges[e as usize]));
+                }
+            }
+            out.meet_boundary(child);
+            out.stay(self.vertices.iter().map(|&s| if s >= INFINITE { s } else { 0.0 }).collect());
+            return out.some();
+        }
         if let Split::NWay { n, triangles } = split {
             let places = n_way::Places::new(parent, n, triangles);
             for &e in &self.sharp {

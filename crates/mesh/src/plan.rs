@@ -62,6 +62,8 @@ pub(crate) struct Step {
     pub size: f64,
     /// Whether the level that it begins with must have its half-edges stored in full.
     pub stored: bool,
+    /// Whether it knows of creases: a split that turns edges does not where texture coordinates have to be taken along.
+    pub creases: bool,
 }
 
 /// How the half-edges of a level are held.
@@ -158,7 +160,8 @@ impl Plan {
                 Split::Triangle => Held::Triangles,
                 _ => Held::Full,
             };
-            Ok(Step { scheme: run.scheme, params, split, size, stored })
+            let creases = mesh.uv.is_none() || !matches!(split, Split::Sqrt3 { .. });
+            Ok(Step { scheme: run.scheme, params, split, size, stored, creases })
         })
     }
 
@@ -177,6 +180,7 @@ impl Plan {
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.
     pub(crate) fn tags<'a>(&self, step: &Step, at: u32, sharp: &'a [bool], creases: Option<&'a Creases>) -> Tags<'a> {
+        let creases = creases.filter(|_| step.creases);
         Tags { sharp, creases, step: at, size: step.size, ..Tags::new(self.rules, step.params) }
     }
 

@@ -6,7 +6,9 @@ mod common;
 use common::polygons::{Around, Point, Polygons, mean, mix, polygons};
 use common::{build, distance, fan, gallery};
 use limn_mesh::refine::evaluate;
-use limn_mesh::{Boundary, Decay, Mesh, Plan, Soup, refine, scheme};
+use limn_mesh::split::Level;
+use limn_mesh::topology::validate;
+use limn_mesh::{Boundary, Connectivity, Counts, Decay, Mesh, Params, Plan, Run, Soup, predict, refine, scheme};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
@@ -470,18 +472,25 @@ fn creases_are_rims_of_the_parts() {
             let mut part = Soup::from_faces(soup.positions.clone(), &faces);
             part.marks.corners.clone_from(&corners);
             let part = build(&part);
-            for id in ALL {
+            for id in ALL.into_iter().chain(["sqrt3", "interpolating-sqrt3"]) {
                 if id != "kobbelt" && !mesh.is_triangles() {
                     continue;
                 }
-                for level in 1..=3 {
+                for level in 1..=if id.contains("sqrt3") { 4 } else { 3 } {
                     let plan = plan(id, Boundary::EdgeOnly, level);
                     let (one, other) =
                         (refine(&mesh, &plan, u64::MAX).unwrap(), refine(&part, &plan, u64::MAX).unwrap());
                     let ours = (0..one.faces.count()).filter(|&f| inside(one.face_source(f as u32) as usize) == side);
                     let ours: Vec<u32> = ours.flat_map(|f| one.faces.face(f).to_vec()).collect();
                     assert_eq!(ours.len(), other.faces.corners().len(), "{name}, {id}, level {level}");
-                    let slow = [&mesh, &part].map(|m| evaluate(m, &plan, &exact(m), |_| ()).unwrap());
+                    let valid = |level: &Level<'_>| validate(level).unwrap_or_else(|e| panic!("{name}, {id}: {e:?}"));
+                    let slow = [&mesh, &part].map(|m| evaluate(m, &plan, &exact(m), valid).unwrap());
+                    let mut real = one.counts;
+                    let mut predicted = predict(&mesh, &plan).unwrap().unwrap().counts;
+                    // Which boundary vertices have three faces and which more is not told apart.
+                    (real.rim, predicted.rim) = ([0; 4], [0; 4]);
+                    assert_eq!(real, predicted, "{name}, {id}, level {level}");
+                    assert_eq!(one.points.len() as u64, predicted.vertices, "{name}, {id}, level {level}");
                     for (&v, &w) in ours.iter().zip(other.faces.corners()) {
                         let (p, q) = (slow[0][v as usize], slow[1][w as usize]);
                         assert!(
@@ -500,4 +509,40 @@ fn creases_are_rims_of_the_parts() {
         }
     }
     assert!(compared > 300, "{compared}");
+}
+
+/// Counts of every level are those predicted, whatever is sharp: on open meshes, beside inner vertices of two faces, and where
+/// a dual step follows, which asks how many faces vertices have.
+#[test]
+fn creases_change_no_counts() {
+    // Two triangles back to back, and a fan that ends in such a pair.
+    let pillow = Soup::from_faces(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]], &[[0, 1, 2], [2, 1, 0]]);
+    let mut soups: Vec<(String, Soup)> = gallery().into_iter().filter(|g| g.1.face_count() <= 60).collect();
+    soups.extend((2..=4).map(|n| (format!("closed fan of {n}"), fan(n, true))));
+    soups.push(("pillow".to_owned(), pillow));
+    for (i, (name, mut soup)) in soups.into_iter().enumerate() {
+        mark(&mut soup, 91 + i as u64, 45);
+        let mesh = build(&soup);
+        for id in ["sqrt3", "interpolating-sqrt3"] {
+            if !mesh.is_triangles() {
+                continue;
+            }
+            for turns in 1..=4 {
+                let mut plan = plan(id, Boundary::EdgeAndCorner, 5);
+                plan.later = vec![Run { from: turns, scheme: scheme("doo-sabin").unwrap(), params: Params::default() }];
+                let mut level = 0;
+                evaluate(&mesh, &plan, &exact(&mesh), |c| {
+                    validate(c).unwrap_or_else(|e| panic!("{name}, {id}, level {level}: {e:?}"));
+                    let (real, told) = (c.counts(), predict(&mesh, &plan.to(level)).unwrap().unwrap().counts);
+                    let few = |c: &Counts| (c.vertices, c.edges, c.faces, c.corners, c.boundary, c.digons);
+                    assert_eq!(few(&real), few(&told), "{name}, {id}, {turns} turns, level {level}");
+                    level += 1;
+                })
+                .unwrap();
+                let done = refine(&mesh, &plan, u64::MAX).unwrap();
+                assert_eq!(done.counts, predict(&mesh, &plan).unwrap().unwrap().counts);
+                assert_eq!(done.faces.count() as u64, done.counts.faces, "{name}, {id}");
+            }
+        }
+    }
 }

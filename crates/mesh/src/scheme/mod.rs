@@ -501,7 +501,7 @@ fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>, row: &mut impl
 /// The neighbours of boundary half-edge `h` along its curve, the vertex before its origin and the one behind its target; none
 /// where the curve ends: at what is sharp, and at a dart.
 #[inline(never)]
-fn along_curve<C: Connectivity>(c: &C, h: u32, tags: Tags<'_>) -> [Option<u32>; 2] {
+pub(crate) fn along_curve<C: Connectivity>(c: &C, h: u32, tags: Tags<'_>) -> [Option<u32>; 2] {
     let (a, n) = (c.origin(h), c.next(h));
     let before = || c.turn_from(h, |_| {}).map(|arriving| c.origin(arriving));
     let after = || {
