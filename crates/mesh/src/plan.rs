@@ -17,7 +17,7 @@ use crate::limit::LimitRule;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
-use crate::scheme::{Accepts, Boundary, Entry, MOST_PARAMS, Params, Rules, Tags};
+use crate::scheme::{Accepts, Boundary, Entry, Family, Honours, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
 use crate::topology::Connectivity;
 use crate::weld::bounds;
@@ -165,17 +165,20 @@ impl Plan {
         })
     }
 
-    /// The first scheme of the plan to which marks of `mesh` mean nothing; at level 0 the one that would come first.
-    pub fn ignores_marks(&self, mesh: &Mesh) -> Option<&'static Entry> {
+    /// The first scheme of the plan to which some of the marks of `mesh` mean nothing, and which do mean something to it on this
+    /// mesh; at level 0 the one that would come first.
+    pub fn ignores_marks(&self, mesh: &Mesh) -> Option<(&'static Entry, Honours)> {
         let both = || mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness);
         let semi_sharp = both().any(|&s| s > 0.0 && s < INFINITE);
         let creases = mesh.edge_sharpness.iter().any(|&s| s >= INFINITE);
         let corners = mesh.vertex_sharpness.iter().any(|&s| s >= INFINITE);
-        let ignores = |e: &&'static Entry| {
-            let honours = &e.honours;
-            semi_sharp && !honours.semi_sharp || creases && !honours.creases || corners && !honours.corners
+        let ignores = |e: &'static Entry| {
+            let mut honours = e.honours;
+            honours.creases &= mesh.uv.is_none() || e.info.family != Family::Sqrt3;
+            let some = semi_sharp && !honours.semi_sharp || creases && !honours.creases || corners && !honours.corners;
+            some.then_some((e, honours))
         };
-        (0..self.level.max(1)).map(|step| self.run(step).scheme).find(ignores)
+        (0..self.level.max(1)).map(|step| self.run(step).scheme).find_map(ignores)
     }
 
     /// What rules have to know of the plan at a step, and of the sharp vertices.
