@@ -12,9 +12,10 @@
 //! So D. Zorin, P. Schroeder and W. Sweldens have it for the modified Butterfly ("Interpolating subdivision for meshes with
 //! arbitrary topology", 1996; Zorin & Schroeder, "Subdivision for modeling and animation", 2000, chapter 4: edges that are tagged
 //! follow the rules of a boundary from both sides), and Kobbelt for his feature lines ("sqrt(3)-subdivision", 2000). As long as
-//! edges are infinitely sharp and form closed curves the pieces of the surface are those of the mesh cut in pieces, to the bit.
+//! edges are infinitely sharp and form closed curves the pieces of the surface are those of the mesh cut in pieces.
 //! A corner ends the curves that meet in it, a boundary vertex where a crease arrives is one. A dart is turned around as if
-//! its edge were smooth, which no paper says otherwise; its edge's point is the crease's, whose curve goes straight on there.
+//! its edge were smooth, as in Loop's and Catmull's schemes; its edge's point is the crease's, whose curve goes straight on there
+//! (a choice of this house).
 //!
 //! *Semi-sharp* (T. DeRose, M. Kass, T. Truong, "Subdivision surfaces in character animation", 1998: sharp rules as long as s is
 //! at least 1, then a linear blend). A rule may see many edges, so with s(t) = what is cut where sharpness counts from more than t,

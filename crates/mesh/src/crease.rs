@@ -20,8 +20,9 @@
 //! the mean sharpness of what ends, at most 1, and the softer one by the rest. An edge point does so by its edge's s.
 //!
 //! Memory: 4 bytes an edge and 1 a vertex of a level; levels without marks have none of it. Cost: linear in the sharp edges
-//! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Limit: splits
-//! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.
+//! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Schemes that
+//! take a crease as a rim have their points from [`crate::apart`]. Limit: splits that turn edges keep infinite sharpness
+//! only, and splits that cut vertices apart none.
 
 use crate::FULL;
 use crate::apart::Apart;

@@ -12,7 +12,7 @@
 //! The weights are the same at every valence, which leaves the limit C1 only where valences are six (and four to seven in
 //! practice; [`super::ModifiedButterfly`] mends the rest). A wing beyond a boundary is the reflection of the triangle before
 //! it, which keeps linear functions linear. The boundary is the four-point curve of the same authors (-1, 9, 9, -1) / 16;
-//! at a corner it ends, as if it went straight on.
+//! at a corner it ends, as if it went straight on. Creases are boundaries from both sides ([`crate::apart`]).
 //!
 //! Cost: about 14 ns an output face.
 

@@ -19,6 +19,8 @@
 //! its boundary edge: p + q - r. (The weights of one and two edges are those that OpenMesh states. Its figures agree where
 //! they do not depend on where a face's list of vertices begins: not in triangles with two boundary edges.)
 //!
+//! Infinitely sharp edges are boundaries from both sides, as in sqrt3.
+//!
 //! C1. Cost: linear; wider stencils than sqrt3. Limit: like every interpolating scheme it ripples where a mesh is not smooth.
 
 use super::{Accepts, Creasing, Family, Info, Scheme, Tags, along_curve};

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Boundaries are the J-spline of their curve: the same with the two neighbours along it (s = 0 is the four-point curve, s =
-//! 1 the cubic B-spline). With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
+//! 1 the cubic B-spline). Creases are boundaries from both sides ([`crate::apart`]), a choice of this house. With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
 //! never stored the moved vertices, oscillation and all. Cost: about 50 ns an output face (two rings an edge).
 
 use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags, along_curve};

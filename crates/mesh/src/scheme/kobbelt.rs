@@ -24,7 +24,7 @@
 //!
 //! A boundary is the four-point curve of its own vertices ([`super::Boundary`] says what corners do). Behind a boundary
 //! vertex p lies 2p - the mean of its inner neighbours, behind a boundary edge's point the reflection of the point across
-//! the face. The paper takes quads only. Other faces are taken here for the one step after which there are none: k_i of
+//! the face. Creases are boundaries from both sides ([`crate::apart`]). The paper takes quads only. Other faces are taken here for the one step after which there are none: k_i of
 //! such a face completes a parallelogram, its point is 9/8 of the mean of its edge points - 1/8 of the mean of those
 //! beyond, which on quads is the rule above.
 //!

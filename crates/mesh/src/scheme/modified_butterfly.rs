@@ -13,7 +13,8 @@
 //! ```
 //!
 //! Beyond a boundary, wings are reflections, which at a regular boundary vertex (three faces) keeps linear functions
-//! linear; the boundary is the four-point curve. C1 everywhere. Cost: about 35 ns an output face, more beside
+//! linear; the boundary is the four-point curve. Tagged edges follow the boundary's rules from both sides, as in the notes, and
+//! vertices beside a crease those beside a boundary ([`crate::apart`]). C1 everywhere. Cost: about 35 ns an output face, more beside
 //! extraordinary vertices.
 
 use super::butterfly::{eight_points, four_points};
