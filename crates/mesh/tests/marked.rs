@@ -181,7 +181,7 @@ fn creases_survive_a_change_of_schemes() {
             assert!((0..3).all(|k| (p[k] - q[k]).abs() < 1e-6), "{ids:?}: {p:?} is to be {q:?}");
         }
     }
-    let triangles = build(&limn_mesh::triangulate_soup(&soup).0);
+    let triangles = build(&triangulate_soup(&soup).0);
     let mut plan = Plan::new(scheme("loop").unwrap(), Boundary::EdgeOnly, 3);
     plan.later = vec![run("catmull-clark", 1)];
     let a = refine(&triangles, &plan, u64::MAX).unwrap();

@@ -12,6 +12,9 @@ use limn_mesh::{Boundary, Connectivity, Counts, Decay, Mesh, Params, Plan, Run, 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
+/// A face's point, by those of the edges.
+type FacePoint = dyn Fn(&Cut<'_>, &BTreeMap<(usize, usize), Point>, &[usize]) -> Point;
+
 const INFINITE: f32 = 10.0;
 
 fn key(v: usize, w: usize) -> (usize, usize) {
@@ -88,7 +91,7 @@ impl Marked {
         (boundary, decay): (Boundary, Decay),
         old: impl Fn(&Cut<'_>, usize) -> Point,
         edge: impl Fn(&Cut<'_>, usize, usize) -> Point,
-        face: Option<&dyn Fn(&Cut<'_>, &BTreeMap<(usize, usize), Point>, &[usize]) -> Point>,
+        face: Option<&FacePoint>,
     ) -> Marked {
         let a = self.p.around();
         // Sharpness counts from each of these on, and how much.

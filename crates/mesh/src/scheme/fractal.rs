@@ -56,8 +56,6 @@ const INFO: Info = Info {
     ],
 };
 
-/// What each of the schemes does.
-
 /// The entry.
 pub(super) const fn fractal() -> Entry {
     if !crate::FULL {
