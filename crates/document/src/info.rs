@@ -17,7 +17,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use limn_mesh::{Counts, Stats, refine::grouped};
+use limn_mesh::{Counts, Family, Honours, Stats, refine::grouped};
 
 use crate::build::Remark;
 use crate::camera::Bounds;
@@ -80,12 +80,31 @@ impl Document {
             // Building the triangles meets the same trouble again: only what is new is said.
             remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
         }
-        if let Some(scheme) = state.plan().ignores_marks(&state.built.mesh) {
-            let name = scheme.info.name;
-            let text = format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do");
-            remarks.push(Remark::new(&text, false));
+        if let Some((scheme, honours)) = state.plan().ignores_marks(&state.built.mesh) {
+            remarks.push(Remark::new(&ignored(&scheme.info, honours), false));
         }
         remarks
+    }
+}
+
+/// What a scheme leaves out of creases and corners.
+fn ignored(scheme: &limn_mesh::Info, honours: Honours) -> String {
+    let name = scheme.name;
+    let others = "Catmull–Clark and Loop honour all";
+    match honours {
+        Honours { creases: true, .. } => {
+            format!("of creases and corners {name} honours those that are infinitely sharp; {others}")
+        }
+        Honours { corners: true, .. } => {
+            format!(
+                "on models with texture coordinates {name} honours infinitely sharp corners, but no creases; {others}"
+            )
+        }
+        _ if scheme.family == Family::Dual => format!(
+            "creases and corners are not honoured by {name}; Catmull–Clark and Loop do, and `scheme nurss` makes a crease \
+             of a row of vertices A by `knot A-B 0` to every B beside it"
+        ),
+        _ => format!("creases and corners are not honoured by {name}; Catmull–Clark and Loop do"),
     }
 }
 

@@ -23,16 +23,18 @@
 //! edges: [`crate::copies`].
 //!
 //! Memory: 4 bytes an edge and 1 a vertex of a level; levels without marks have none of it. Cost: linear in the sharp edges
-//! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Limit: splits
-//! that turn edges or cut vertices apart end creases; infinitely sharp vertices stay where vertices do.
+//! (times their ends' valences) beside memory that is zero. The poke, which cuts no edge, leaves them as they are. Schemes that
+//! take a crease as a rim have their points from [`crate::apart`]. Limit: splits that turn edges keep infinite sharpness
+//! only, and splits that cut vertices apart none.
 
 use crate::FULL;
+use crate::apart::Apart;
 use crate::copies::{self, Beyond, Place};
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::scheme::{Decay, FaceVarying, Tags};
 use crate::sink::Row;
-use crate::split::{Level, Split, mixed, n_way};
+use crate::split::{Level, Split, mixed, n_way, stored};
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// How sharp a level is. Edges by their ids; boundary edges are not in it, because they always are.
@@ -59,6 +61,8 @@ const SHARP: u8 = 4;
 const KEPT: u8 = 8;
 /// A vertex that stays for as long as another: [`Beyond::leans`].
 const LEANS: u8 = 16;
+/// A vertex where semi-sharp edges end, beyond a cut perhaps.
+const FADES: u8 = 32;
 
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,8 +106,11 @@ impl Creases {
         if !mesh.edge_sharpness.is_empty() {
             for e in 0..t.edges() {
                 let h = t.edge_half_edge(e);
-                out.sharpen(t, h, mesh.edge_sharpness[own.edge(h) as usize]);
+                if !is_boundary(t.twin(h)) {
+                    out.sharpen(t, h, mesh.edge_sharpness[own.edge(h) as usize]);
+                }
             }
+            out.meet_boundary(t);
         }
         if !mesh.vertex_sharpness.is_empty() {
             let of = |v: u32| mesh.vertex_sharpness[own.origin(t.vertex_half_edge(v)) as usize];
@@ -124,8 +131,11 @@ impl Creases {
         let mut out = Creases::with_room(t);
         for e in 0..t.edges() {
             let h = t.edge_half_edge(e);
-            out.sharpen(t, h, edge(h));
+            if !is_boundary(t.twin(h)) {
+                out.sharpen(t, h, edge(h));
+            }
         }
+        out.meet_boundary(t);
         out.stay((0..t.vertices()).map(vertex).collect());
         out.listen(beyond);
         out.some()
@@ -135,18 +145,26 @@ impl Creases {
         Creases { edges: vec![0.0; c.edges() as usize], flags: vec![0; c.vertices() as usize], ..Creases::default() }
     }
 
-    /// Notes the sharpness of the edge of `h`.
+    /// Notes the sharpness of the edge of `h`, which is not on a boundary.
     fn sharpen(&mut self, c: &impl Connectivity, h: u32, s: f32) {
-        if s <= 0.0 || is_boundary(c.twin(h)) {
+        if s <= 0.0 {
             return;
         }
         let e = c.edge(h);
         self.edges[e as usize] = s;
         self.sharp.push(e);
         for v in [c.origin(h), c.origin(c.next(h))] {
-            let more = if is_boundary(c.twin(c.vertex_half_edge(v))) { 3 } else { 1 };
             let flag = &mut self.flags[v as usize];
-            *flag = (*flag & !EDGES) | ((*flag & EDGES) + more).min(3);
+            *flag += u8::from(*flag & EDGES < EDGES);
+            *flag |= if s < INFINITE { FADES } else { 0 };
+        }
+    }
+
+    /// Notes where sharp edges meet the boundary. Cost: its length.
+    fn meet_boundary(&mut self, c: &impl Connectivity) {
+        for r in 0..if self.sharp.is_empty() { 0 } else { c.boundary_half_edges() } {
+            let flag = &mut self.flags[c.origin(c.boundary_half_edge(r)) as usize];
+            *flag |= if *flag & EDGES > 0 { EDGES } else { 0 };
         }
     }
 
@@ -162,8 +180,9 @@ impl Creases {
     fn listen(&mut self, beyond: Vec<Beyond>) {
         for b in &beyond {
             let flag = &mut self.flags[b.vertex as usize];
-            *flag |=
-                if b.leans { LEANS } else { 0 } | if b.edges.iter().any(|x| x.1 == Place::Copy) { EDGES } else { 0 };
+            *flag |= FADES
+                | if b.leans { LEANS } else { 0 }
+                | if b.edges.iter().any(|x| x.1 == Place::Copy) { EDGES } else { 0 };
         }
         self.beyond = beyond;
     }
@@ -187,6 +206,19 @@ impl Creases {
         let left =
             |b: &Beyond| b.below(|s| if split == Split::Poke { s } else { self.half(parent, b.vertex, s, decay) });
         out.listen(self.beyond.iter().filter_map(left).collect());
+        if let Split::Sqrt3 { trisect } = split {
+            let apart = Apart::turned(parent, self);
+            for &e in &self.sharp {
+                let h = parent.edge_half_edge(e);
+                if apart.is_cut(h) {
+                    let thirds = stored::sqrt3_thirds(parent, h, trisect);
+                    thirds.into_iter().for_each(|third| out.sharpen(child, third, self.edges[e as usize]));
+                }
+            }
+            out.meet_boundary(child);
+            out.stay(self.vertices.iter().map(|&s| if s >= INFINITE { s } else { 0.0 }).collect());
+            return out.some();
+        }
         if let Split::NWay { n, triangles } = split {
             let places = n_way::Places::new(parent, n, triangles);
             for &e in &self.sharp {
@@ -201,6 +233,7 @@ impl Creases {
                     out.sharpen(child, places.slot(h, part), left);
                 }
             }
+            out.meet_boundary(child);
             out.stay(self.vertices.iter().map(|&s| less(s)).collect());
             return out.some();
         }
@@ -216,6 +249,7 @@ impl Creases {
                 out.sharpen(child, half, self.half(parent, parent.origin(end), s, decay));
             }
         }
+        out.meet_boundary(child);
         out.stay(self.vertices.iter().map(|&s| if split == Split::Poke { s } else { less(s) }).collect());
         out.some()
     }
@@ -227,6 +261,7 @@ impl Creases {
     }
 
     /// The sharpness of the edge of `h`, [`INFINITE`] on a boundary.
+    #[inline(always)]
     pub fn along(&self, c: &impl Connectivity, h: u32) -> f32 {
         if is_boundary(c.twin(h)) { INFINITE } else { self.edges[c.edge(h) as usize] }
     }
@@ -239,7 +274,13 @@ impl Creases {
     /// Whether rules for vertices without marks do not hold for `v`.
     #[inline(always)]
     pub(crate) fn marked(&self, v: u32) -> bool {
-        self.flags[v as usize] > 1
+        self.flags[v as usize] & !FADES > 1
+    }
+
+    /// Whether `v` is an end of a sharp edge.
+    #[inline(always)]
+    pub(crate) fn is_on_crease(&self, v: u32) -> bool {
+        self.flags[v as usize] & EDGES != 0
     }
 
     /// Whether `v` itself is infinitely sharp.
@@ -249,11 +290,14 @@ impl Creases {
     }
 
     /// The sharpness at `v` of the child of an edge of sharpness `s`.
+    #[inline(always)]
     fn half(&self, c: &impl Connectivity, v: u32, s: f32, decay: Decay) -> f32 {
-        if decay == Decay::Uniform || s >= INFINITE {
-            return less(s);
-        }
-        let all = self.survey(c, v, |s, _| s);
+        if decay == Decay::Uniform || s >= INFINITE { less(s) } else { self.chaikin_half(c, v, s) }
+    }
+
+    #[inline(never)]
+    fn chaikin_half(&self, c: &impl Connectivity, v: u32, s: f32) -> f32 {
+        let all = self.survey(c, v);
         chaikin(s, all.sum(), all.semi)
     }
 }
@@ -277,7 +321,7 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
     match tags.creases {
         _ if tags.is_sharp(c, v) => At::Corner,
         Some(creases) if creases.vertex(v) > 0.0 => At::Corner,
-        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v, |s, _| s).at(),
+        Some(creases) if creases.flags[v as usize] != 0 => creases.survey(c, v).at(),
         _ if is_boundary(c.twin(c.vertex_half_edge(v))) => {
             let mut faces = 0;
             c.turn(v, |_| faces += 1);
@@ -291,23 +335,41 @@ pub fn at<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> At {
 #[inline(never)]
 pub(crate) fn ends<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Option<[u32; 2]> {
     let creases = tags.creases.filter(|creases| creases.vertex(v) <= 0.0)?;
-    let found = creases.survey(c, v, |s, _| s);
-    (found.count == 2).then_some(found.ends)
+    let found = creases.survey(c, v);
+    (found.count == 2).then_some([found.sharp[0].1, found.sharp[1].1])
 }
 
-/// The sharp edges at a vertex: how many, the first two by place and by the vertices that they lead to; and how many of them
-/// are semi-sharp, with the sum of their sharpness.
+/// The sharp edges at a vertex: how many, the first two by place and the first few by sharpness and by the vertices that
+/// they lead to; and how many of them are semi-sharp, with the sum of their sharpness.
 struct Survey {
     count: usize,
+    seen: usize,
     places: [u32; 2],
-    ends: [u32; 2],
+    sharp: [(f32, u32); FEW],
     semi: u32,
     /// In f64, where the order does not matter: every copy of a vertex has to find the same.
     sum: f64,
 }
 
+/// So many sharp edges at a vertex are noted: more are rare, and turned through again.
+const FEW: usize = 6;
+
 impl Survey {
-    fn add(&mut self, s: f32) {
+    #[inline(always)]
+    fn add(&mut self, s: f32, end: u32, place: u32) {
+        if let Some(sharp) = self.sharp.get_mut(self.seen) {
+            *sharp = (s, end);
+        }
+        if let Some(at) = self.places.get_mut(self.seen) {
+            *at = place;
+        }
+        self.seen += 1;
+        self.count += 1;
+        self.sum_up(s);
+    }
+
+    #[inline(always)]
+    fn sum_up(&mut self, s: f32) {
         if s < INFINITE {
             (self.semi, self.sum) = (self.semi + 1, self.sum + f64::from(s));
         }
@@ -328,27 +390,24 @@ impl Survey {
 }
 
 impl Creases {
-    /// The edges at `v`, as sharp as `of` says of what they are and of where they lie, if that is beyond a cut.
-    fn survey<C: Connectivity>(&self, c: &C, v: u32, mut of: impl FnMut(f32, Option<Place>) -> f32) -> Survey {
-        let mut found = Survey { count: 0, places: [0; 2], ends: [v; 2], semi: 0, sum: 0.0 };
+    /// The edges at `v`, and those that lie beyond a cut: at other copies they count, elsewhere they are summed up alone.
+    #[inline(always)]
+    fn survey<C: Connectivity>(&self, c: &C, v: u32) -> Survey {
+        let mut found = Survey { count: 0, seen: 0, places: [0; 2], sharp: [(0.0, v); FEW], semi: 0, sum: 0.0 };
         let mut place = 0;
-        spokes(c, v, |h, other| {
-            let s = of(self.along(c, h), None);
+        let arriving = c.turn(v, |h| {
+            let s = self.along(c, h);
             if s > 0.0 {
-                if found.count < 2 {
-                    (found.places[found.count], found.ends[found.count]) = (place, other);
-                }
-                found.count += 1;
-                found.add(s);
+                found.add(s, c.origin(c.next(h)), place);
             }
             place += 1;
         });
+        if let Some(arriving) = arriving {
+            found.add(INFINITE, c.origin(arriving), place);
+        }
         for &(s, at) in self.beyond(v).into_iter().flat_map(|b| &b.edges) {
-            let s = of(s, Some(at));
-            if s > 0.0 {
-                found.count += usize::from(at == Place::Copy);
-                found.add(s);
-            }
+            found.count += usize::from(at == Place::Copy);
+            found.sum_up(s);
         }
         found
     }
@@ -381,36 +440,56 @@ fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
         return parts;
     }
     let own = creases.vertex(v);
-    let leans = creases.beyond(v).is_some_and(|b| b.leans);
-    let now = creases.survey(c, v, |s, _| s);
+    // Where nothing ends and it is clear what holds.
+    let flag = creases.flags[v as usize];
+    if own <= 0.0 && flag & (EDGES | FADES) == EDGES {
+        return parts;
+    }
+    let beyond = creases.beyond(v);
+    let leans = beyond.is_some_and(|b| b.leans);
+    let now = creases.survey(c, v);
     let before = part(own > 0.0 || leans, now.count);
     let mut after = before;
-    parts.ends = now.ends;
+    parts.ends = [now.sharp[0].1, now.sharp[1].1];
     if now.semi > 0 || own > 0.0 {
         // What ends within this step, and whether what is leant on goes on.
         let (mut ending, mut count, mut stays) = (0.0, 0u32, false);
         if own > 0.0 && less(own) == 0.0 {
             (ending, count) = (f64::from(own), 1);
         }
-        let next = creases.survey(c, v, |s, at| {
-            let left = match tags.rules.decay {
-                Decay::Chaikin if s > 0.0 && s < INFINITE => chaikin(s, now.sum(), now.semi),
-                _ => less(s),
-            };
-            let counts = match at {
-                None | Some(Place::Copy) => true,
-                Some(Place::Region) => leans,
-                Some(Place::Seam) => false,
-            };
-            if counts && s > 0.0 && left == 0.0 {
+        let left = |s: f32| match tags.rules.decay {
+            Decay::Chaikin if s < INFINITE => chaikin(s, now.sum(), now.semi),
+            _ => less(s),
+        };
+        let (mut lasting, mut ends) = (0, [v; 2]);
+        let mut take = |s: f32, other: u32| {
+            if left(s) == 0.0 {
+                (ending, count) = (ending + f64::from(s), count + 1);
+                return;
+            }
+            if let Some(end) = ends.get_mut(lasting) {
+                *end = other;
+            }
+            lasting += 1;
+        };
+        match now.sharp.get(..now.seen) {
+            Some(sharp) => sharp.iter().for_each(|&(s, other)| take(s, other)),
+            None => spokes(c, v, |h, other| match creases.along(c, h) {
+                s if s > 0.0 => take(s, other),
+                _ => {}
+            }),
+        }
+        for &(s, at) in beyond.into_iter().flat_map(|b| &b.edges) {
+            if left(s) > 0.0 {
+                stays = true;
+                lasting += usize::from(at == Place::Copy);
+            } else if at == Place::Copy || at == Place::Region && leans {
                 (ending, count) = (ending + f64::from(s), count + 1);
             }
-            stays |= at.is_some() && left > 0.0;
-            left
-        });
-        after = part(less(own) > 0.0 || leans && stays, next.count);
+        }
+        after = part(less(own) > 0.0 || leans && stays, lasting);
         if after == 1 && before == 2 {
-            parts.ends = next.ends;
+            parts.ends = ends;
         }
         if after != before {
             let sharp = f64::from((ending as f32 / count as f32).min(1.0));
@@ -468,7 +547,7 @@ pub(crate) fn edge_point<C: Connectivity, R: Row>(
 }
 
 /// By how much the edge of `h`, not on a boundary, is a crease in this step.
-#[inline(never)]
+#[inline(always)]
 fn edge_share<C: Connectivity>(c: &C, h: u32, tags: &Tags<'_>) -> f64 {
     let Some(creases) = tags.creases else { return 0.0 };
     let s = creases.along(c, h);

@@ -25,6 +25,7 @@
 //! No I/O, clock, GPU or browser in here. Native and wasm give the same bits: sums run in a fixed order, no fused
 //! multiply-add, transcendental functions from `libm`, no hash map is iterated.
 
+mod apart;
 mod charts;
 mod connect;
 mod copies;
@@ -68,8 +69,8 @@ pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine}
 pub use refined::{Faces, Refined, UvValues};
 pub use report::{Note, Report};
 pub use scheme::{
-    Accepts, Boundary, Decay, Domain, Entry, FaceVarying, Family, Honours, Info, Param, Params, Rules, SCHEMES,
-    TriangleRule, scheme,
+    Accepts, Boundary, Creasing, Decay, Domain, Entry, FaceVarying, Family, Honours, Info, Param, Params, Rules,
+    SCHEMES, TriangleRule, scheme,
 };
 pub use shapes::{SHAPES, Shape, shape};
 pub use soup::{Marks, NONE, Soup};

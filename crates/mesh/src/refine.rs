@@ -454,12 +454,13 @@ fn run<const N: usize>(
         old = new;
         let next = steps.get(at as usize + 1);
         if next.is_some() || plan.closes() || beyond.is_some() {
-            let mut below = Owned::below(&level, split);
+            let mut below = Owned::below(&level, split, tags.creases);
             let mut at = 0;
             while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
             knots = split.knots(&level, &knots, &lone);
             let below = below.stored_for(next);
-            creases = creases.and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
+            creases =
+                creases.filter(|_| step.creases).and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
             owned = Some(below);
         }
     }

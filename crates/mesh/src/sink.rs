@@ -211,7 +211,10 @@ impl Row for Entries {
         self.weights.push((Source::Child(c), weight));
     }
     fn scale(&mut self, factor: f64) {
-        self.weights.iter_mut().for_each(|(_, w)| *w *= factor);
+        match factor {
+            0.0 => self.weights.clear(),
+            _ => self.weights.iter_mut().for_each(|(_, w)| *w *= factor),
+        }
     }
     fn constant(&mut self, offset: [f64; 3]) {
         self.offset = offset;

@@ -38,14 +38,6 @@ pub fn boundary_rank(twin: u32) -> u32 {
     !twin
 }
 
-/// Whether `h` lies on the rim: a boundary that counts. Where charts of texture coordinates are refined, their seams are
-/// boundaries whose ranks lie behind.
-#[inline(always)]
-pub(crate) fn is_rim<C: Connectivity>(c: &C, h: u32) -> bool {
-    let twin = c.twin(h);
-    is_boundary(twin) && boundary_rank(twin) < c.boundary_half_edges()
-}
-
 /// Read access to the half-edges of one level. All ids are dense and 0-based; every answer takes constant time.
 pub trait Connectivity {
     /// What all faces look like, where the type alone says so: lets a compiler leave out what cannot be.
@@ -84,11 +76,41 @@ pub trait Connectivity {
     /// The half-edge that owns edge `e`; the only one on a boundary.
     fn edge_half_edge(&self, e: u32) -> u32;
 
+    /// Where the turn around the origin of `h` that comes by `h` starts. (Every vertex has one turn, but on a mesh that is
+    /// looked at as if it were cut.)
+    #[inline(always)]
+    fn first_spoke(&self, h: u32) -> u32 {
+        self.vertex_half_edge(self.origin(h))
+    }
+    /// Whether `h` lies on the rim: a boundary that counts. Where charts of texture coordinates are refined, their seams are
+    /// boundaries whose ranks lie behind.
+    #[inline(always)]
+    fn is_rim(&self, h: u32) -> bool {
+        let twin = self.twin(h);
+        is_boundary(twin) && boundary_rank(twin) < self.boundary_half_edges()
+    }
+    /// Whether `v` lies on a boundary and in one face.
+    #[inline(always)]
+    fn is_tip(&self, v: u32) -> bool {
+        let start = self.vertex_half_edge(v);
+        is_boundary(self.twin(start)) && is_boundary(self.twin(self.prev(start)))
+    }
+    /// Whether marks say that `v` stays where it is, and curves end there: on a mesh that is looked at as if it were cut.
+    #[inline(always)]
+    fn is_pinned(&self, _v: u32) -> bool {
+        false
+    }
+
     /// Calls `visit` with the half-edges that leave `v`, counter-clockwise. Returns the last spoke if `v` lies on a
     /// boundary: the half-edge that *arrives* at `v` along the boundary. Cost: the valence.
     #[inline(always)]
-    fn turn(&self, v: u32, mut visit: impl FnMut(u32)) -> Option<u32> {
-        let start = self.vertex_half_edge(v);
+    fn turn(&self, v: u32, visit: impl FnMut(u32)) -> Option<u32> {
+        self.turn_from(self.vertex_half_edge(v), visit)
+    }
+
+    /// [`Connectivity::turn`] around the vertex that `start` leaves, from there on: all the way round, or to the boundary.
+    #[inline(always)]
+    fn turn_from(&self, start: u32, mut visit: impl FnMut(u32)) -> Option<u32> {
         let mut h = start;
         loop {
             visit(h);

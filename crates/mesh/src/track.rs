@@ -36,11 +36,13 @@ pub(crate) enum Owned {
 
 impl Owned {
     /// The level below, to be filled. A stored one comes whole.
-    pub(crate) fn below(parent: &Level<'_>, split: Split) -> Owned {
+    pub(crate) fn below(parent: &Level<'_>, split: Split, creases: Option<&Creases>) -> Owned {
         match (split, parent) {
             (Split::Quad, _) => Owned::Quads(QuadLevel::below(parent)),
             (Split::Triangle, _) => Owned::Triangles(TriangleLevel::below(parent)),
-            (_, Level::Base(t)) if FULL => Owned::Stored(split.cut(t).connect(t, split, split.children(*t))),
+            (_, Level::Base(t)) if FULL => {
+                Owned::Stored(split.cut(t, creases).connect(t, split, split.children(*t), creases))
+            }
             _ => unreachable!("stored levels come of stored levels"),
         }
     }
@@ -238,10 +240,11 @@ impl Track {
             let next = self.work(&level, mesh, plan, steps, quota);
             match next {
                 Some(next) => {
-                    let split = steps[self.level as usize - 1].split;
+                    let Step { split, creases, .. } = steps[self.level as usize - 1];
                     self.creases = self
                         .creases
                         .take()
+                        .filter(|_| creases)
                         .zip(next.as_ref())
                         .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
                     self.loose = face_varying::below(&self.loose, &level, split);
@@ -294,7 +297,7 @@ impl Track {
             return None;
         }
         self.knots = step.split.knots(&Level::Base(own), knots, &step.split.lone(own));
-        self.beside = Some(Owned::below(&Level::Base(own), step.split));
+        self.beside = Some(Owned::below(&Level::Base(own), step.split, None));
         Some(Owned::Stored(new.topology))
     }
 
@@ -305,7 +308,7 @@ impl Track {
         }
         let held = self.beside.take();
         let level = held.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
-        let mut below = Owned::below(&level, split);
+        let mut below = Owned::below(&level, split, None);
         let mut at = 0;
         while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
         self.beside = Some(below.stored_for(following));
@@ -398,8 +401,8 @@ impl Track {
             }
             Stage::Corners(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
-                let cut = split.cut(t);
-                let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32)));
+                let cut = split.cut(t, tags.creases);
+                let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32, tags.creases)));
                 self.source = self.behind(t, split, &cut);
                 (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
                 if closes {
@@ -427,8 +430,8 @@ impl Track {
             }
             Stage::HalfEdges(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
-                let cut = split.cut(t);
-                let stored = cut.connect(t, split, children as u32);
+                let cut = split.cut(t, tags.creases);
+                let stored = cut.connect(t, split, children as u32, tags.creases);
                 self.source = self.behind(t, split, &cut);
                 self.knots = split.knots(level, tags.knots, &self.lone);
                 self.follow(mesh, split, following);
@@ -436,7 +439,7 @@ impl Track {
                 return Some(Some(Owned::Stored(stored)));
             }
             Stage::HalfEdges(at) => {
-                let next = self.next.get_or_insert_with(|| Owned::below(level, split));
+                let next = self.next.get_or_insert_with(|| Owned::below(level, split, None));
                 if next.fill(level, at, quota) {
                     let next = self.next.take().map(|n| n.stored_for(following));
                     self.knots.clear();

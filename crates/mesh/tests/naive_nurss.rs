@@ -337,3 +337,38 @@ proptest! {
         }
     }
 }
+
+/// What the report on a model promises: intervals of 0 at the vertices of a row, toward those beside it, make a crease of the row.
+/// Along the row, or at both ends of an edge (then the formula says nothing), they do not.
+#[test]
+fn knots_of_zero_across_a_row_make_a_crease() {
+    let at = |i: u32, j: u32| 9 * j + i;
+    // Quads over a roof whose ridge is the row j = 4.
+    let roof = |y: f32| -0.5 * (y - 4.0).abs();
+    let positions = (0..81).map(|v| [(v % 9) as f32, (v / 9) as f32, roof((v / 9) as f32)]).collect();
+    let cells = (0..64).map(|f| (f % 8, f / 8));
+    let quad = |(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+    let smooth = Soup::from_faces(positions, &cells.map(quad).collect::<Vec<_>>());
+    // Intervals of 0 at the first vertex toward the second.
+    let across = (0..9).flat_map(|i| [[at(i, 4), at(i, 3)], [at(i, 4), at(i, 5)]]);
+    let one_side = (0..9).map(|i| [at(i, 4), at(i, 3)]);
+    let along = (0..8).flat_map(|i| [[at(i, 4), at(i + 1, 4)], [at(i + 1, 4), at(i, 4)]]);
+    let both_ends = across.clone().flat_map(|[a, b]| [[a, b], [b, a]]);
+    let cases: [(Vec<[u32; 2]>, bool); 5] = [
+        (across.collect(), true),
+        (one_side.collect(), true),
+        (along.collect(), false),
+        (both_ends.collect(), false),
+        (Vec::new(), false),
+    ];
+    for (case, (zeros, crease)) in cases.into_iter().enumerate() {
+        let mut soup = smooth.clone();
+        soup.marks.knots = zeros.into_iter().map(|ends| (ends, 0.0)).collect();
+        let plan = Plan::new(scheme("nurss").unwrap(), Boundary::EdgeAndCorner, 4);
+        let points = refine(&build(&soup), &plan, u64::MAX).unwrap().points;
+        // A crease leaves the roof as it is.
+        let off = points.iter().map(|p| (p[2] - roof(p[1])).abs()).fold(0.0, f32::max);
+        assert_eq!(off < 1e-5, crease, "case {case}: {off}");
+        assert!(crease || off > 0.05, "case {case}: {off}");
+    }
+}

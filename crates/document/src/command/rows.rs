@@ -179,7 +179,8 @@ pub static COMMANDS: &[Spec] = &[
         flags: &[],
         keys: Keys::None,
         summary: "set the knot interval of edge A-B at A (A=B: at both ends), for the scheme nurss",
-        detail: "Intervals are 1 unless set; what counts is how they compare with each other.",
+        detail: "Intervals are 1 unless set; what counts is how they compare with each other. 0 at every vertex of a row, toward \
+                 those beside it, makes a crease of the row.",
         example: "knot 4=5 0.5",
         build: |p| match p.values[..] {
             [Value::Knot(ends, both), Value::Number(d)] if d < f32::MAX => {

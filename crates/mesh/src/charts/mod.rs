@@ -280,9 +280,9 @@ pub(crate) fn carry(
     }
 
     // The children's half-edges, cut where a side has other places on its other face.
-    let cut = split.cut(g);
+    let cut = split.cut(g, None);
     debug_assert_eq!(places.len(), cut.corners.len());
-    let child = cut.connect(g, split, split.children(g));
+    let child = cut.connect(g, split, split.children(g), None);
     let apart = |h: u32, t: u32| {
         places[h as usize] != places[child.next(t) as usize] || places[child.next(h) as usize] != places[t as usize]
     };

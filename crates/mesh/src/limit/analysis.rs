@@ -169,7 +169,8 @@ impl Kind {
 fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, seen: &mut Seen) -> Found {
     let (mut anchor, mut split) = (Anchor::Vertex(0), setting.split);
     if let Split::Sqrt3 { .. } = split {
-        let rim = |v: u32| is_boundary(first.topology.twin(first.topology.vertex_half_edge(v)));
+        let creased = |v: u32| first.creases.as_ref().is_some_and(|c| c.is_on_crease(v));
+        let rim = |v: u32| creased(v) || is_boundary(first.topology.twin(first.topology.vertex_half_edge(v)));
         if (0..first.topology.vertices()).any(|v| first.rings[v as usize] < rings && rim(v)) {
             return Found::Nothing;
         }
@@ -239,7 +240,7 @@ fn refine(
     let level = Level::Base(t);
     let lone = setting.split.lone(t);
     let tags = patch.tags(setting.tags, &lone);
-    let mut child = Owned::below(&level, setting.split);
+    let mut child = Owned::below(&level, setting.split, tags.creases);
     let mut at = 0;
     while !child.fill(&level, &mut at, &mut { usize::MAX }) {}
     let child = child.view();

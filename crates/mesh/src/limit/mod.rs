@@ -33,6 +33,7 @@ mod sqrt3;
 
 use analysis::{Analysis, Setting};
 
+use crate::apart::Apart;
 use crate::crease::Creases;
 use crate::marks::INFINITE;
 use crate::plan::Step;
@@ -164,13 +165,13 @@ struct Ring {
 const MOST_ROOTS: usize = 64;
 
 impl Ring {
-    /// Turns around `v`. Cost: the valence.
-    fn read(&mut self, c: &impl Connectivity, v: u32, marks: Option<&Creases>) {
+    /// Turns around the vertex that `start` leaves, from there on. Cost: the valence.
+    fn read(&mut self, c: &impl Connectivity, start: u32, marks: Option<&Creases>) {
         let Ring { spokes, neighbours, creases, fading, .. } = self;
         spokes.clear();
         neighbours.clear();
         creases.clear();
-        self.arriving = c.turn(v, |h| {
+        self.arriving = c.turn_from(start, |h| {
             spokes.push(h);
             neighbours.push(c.origin(c.next(h)));
         });
@@ -179,8 +180,8 @@ impl Ring {
         }
         *fading = false;
         if let Some(marks) = marks {
-            let s = marks.vertex(v);
-            *fading = s > 0.0 && s < INFINITE || marks.beyond(v).is_some();
+            let s = marks.vertex(c.origin(start));
+            *fading = s > 0.0 && s < INFINITE || marks.beyond(c.origin(start)).is_some();
             for (i, &h) in spokes.iter().enumerate() {
                 let s = marks.along(c, h);
                 creases.extend((s >= INFINITE).then_some(i as u32));
@@ -303,8 +304,22 @@ impl<'a> Projector<'a> {
         let (c, tags, mask) = (self.level, self.tags, &mut self.mask);
         mask.clear();
         match self.rule {
-            LimitRule::CatmullClark | LimitRule::Loop | LimitRule::Sqrt3 => {
-                self.ring.read(c, v, tags.creases);
+            LimitRule::Sqrt3 => {
+                let trisect = self.split == (Split::Sqrt3 { trisect: true });
+                match tags.creases {
+                    Some(creases) => {
+                        let tags = Tags { creases: None, ..tags };
+                        sqrt3::parts(&Apart::turned(c, creases), &mut self.ring, trisect, v, tags, mask);
+                    }
+                    None => {
+                        self.ring.read(c, c.vertex_half_edge(v), None);
+                        let kind = self.ring.kind(tags.is_sharp(c, v));
+                        sqrt3::mask(c, &self.ring, (kind, trisect), v, tags, mask);
+                    }
+                }
+            }
+            LimitRule::CatmullClark | LimitRule::Loop => {
+                self.ring.read(c, c.vertex_half_edge(v), tags.creases);
                 let kind = self.ring.kind(tags.is_sharp(c, v));
                 // The closed forms know marks that last, and one rule for triangles.
                 let odd = |h: &u32| c.face_half_edges(c.face(*h)).len() != 4;
@@ -316,15 +331,11 @@ impl<'a> Projector<'a> {
                 }
                 match self.rule {
                     LimitRule::Loop => loop_::mask(&self.ring, kind, v, tags, mask),
-                    LimitRule::CatmullClark => catmull_clark::mask(c, &self.ring, kind, v, mask),
-                    _ => {
-                        let trisect = self.split == (Split::Sqrt3 { trisect: true });
-                        sqrt3::mask(c, &self.ring, (kind, trisect), v, |v| tags.is_sharp(c, v), mask);
-                    }
+                    _ => catmull_clark::mask(c, &self.ring, kind, v, mask),
                 }
             }
             LimitRule::MidEdge => {
-                self.ring.read(c, v, None);
+                self.ring.read(c, c.vertex_half_edge(v), None);
                 mid_edge::mask(c, &self.ring, self.split, v, mask);
             }
             LimitRule::Analysis => {

@@ -17,6 +17,8 @@
 //! by the rows of that step.
 
 use super::{Kind, Mask, Ring};
+use crate::apart::Apart;
+use crate::scheme::{Tags, along_curve};
 use crate::topology::{Connectivity, is_boundary};
 
 /// Weights of a neighbour for the limit point and both tangents.
@@ -27,13 +29,65 @@ fn share(ring: &Ring, n: usize) -> f64 {
     (4.0 - 2.0 * ring.root(1, n)[0]) / 9.0
 }
 
-/// The mask of `v`. `trisect` says whether the next step cuts boundary edges, `sharp` which vertices stay.
-pub(super) fn mask(
-    c: &impl Connectivity,
+/// The mask of `v` on a level with creases: the point of one part of its neighbourhood, the tangents of all. At a dart, which sees
+/// another ring in every step, nothing is known: it stays.
+pub(super) fn parts<C: Connectivity>(
+    c: &Apart<'_, C>,
+    ring: &mut Ring,
+    trisect: bool,
+    v: u32,
+    tags: Tags<'_>,
+    all: &mut Mask,
+) {
+    if c.is_dart(v) {
+        return all.keep(v);
+    }
+    let mut one = Mask::default();
+    for (i, start) in (0..).zip(c.starts(v)) {
+        one.clear();
+        ring.read(c, start, None);
+        let kind = ring.kind(tags.is_sharp(c, v));
+        mask(c, ring, (kind, trisect), v, tags, &mut one);
+        if let (Kind::Curve(a, b), false) = (kind, trisect) {
+            // Curves move when they are cut, their darts before.
+            for end in [a, b].map(|i| ring.neighbours[i as usize]).into_iter().filter(|&u| c.is_dart(u)) {
+                move_dart(c, ring, end, &mut one);
+            }
+        }
+        if i == 0 {
+            all.point.append(&mut one.point);
+        }
+        if one.sectors == 0 {
+            all.tangents.clear();
+            all.sectors = 0;
+            return;
+        }
+        all.tangents.extend(one.tangents.iter().map(|&(v, w, _)| (v, w, i)));
+        all.sectors = i + 1;
+    }
+}
+
+/// Puts where the dart `u` goes in the next step for where it is.
+fn move_dart(c: &impl Connectivity, ring: &Ring, u: u32, mask: &mut Mask) {
+    let mut around = Vec::new();
+    c.turn(u, |h| around.push(c.origin(c.next(h))));
+    let a = share(ring, around.len());
+    let part = a / around.len() as f64;
+    let own: f64 = mask.point.iter().filter(|p| p.0 == u).map(|p| p.1).sum();
+    let tangent = mask.tangents.iter().filter(|t| t.0 == u).fold([0.0; 2], |s, t| [s[0] + t.1[0], s[1] + t.1[1]]);
+    mask.point.push((u, -a * own));
+    mask.point.extend(around.iter().map(|&w| (w, part * own)));
+    mask.tangents.push((u, tangent.map(|x| -a * x), 0));
+    mask.tangents.extend(around.iter().map(|&w| (w, tangent.map(|x| part * x), 0)));
+}
+
+/// The mask of `v`. `trisect` says whether the next step cuts boundary edges.
+pub(super) fn mask<C: Connectivity>(
+    c: &C,
     ring: &Ring,
     (kind, trisect): (Kind, bool),
     v: u32,
-    sharp: impl Fn(u32) -> bool,
+    tags: Tags<'_>,
     mask: &mut Mask,
 ) {
     // The children that will be v's neighbours, each as what it is made of.
@@ -45,18 +99,18 @@ pub(super) fn mask(
         let last = ring.spokes.len() - 1;
         for (i, &h) in ring.spokes.iter().enumerate() {
             if is_boundary(c.twin(h)) && i == 0 {
-                children.push(third(c, h, false, &sharp));
+                children.push(third(c, h, false, tags));
             } else if ring.arriving.is_some() && i == last {
                 // Both ends of the curve are pushed for themselves.
             } else if is_boundary(c.twin(c.next(h))) {
-                children.push(third(c, c.next(h), false, &sharp));
-                children.push(third(c, c.next(h), true, &sharp));
+                children.push(third(c, c.next(h), false, tags));
+                children.push(third(c, c.next(h), true, tags));
             } else {
                 let [a, b] = [c.origin(c.next(h)), c.origin(c.prev(h))];
                 children.push([v, a, b].map(|v| (v, 1.0 / 3.0)).to_vec());
             }
         }
-        children.extend(ring.arriving.map(|h| third(c, h, true, &sharp)));
+        children.extend(ring.arriving.map(|h| third(c, h, true, tags)));
     }
     let mut own = [0.0; 3];
     let mut weights: Vec<Weights> = Vec::with_capacity(children.len());
@@ -125,16 +179,11 @@ pub(super) fn mask(
 }
 
 /// The first or second point that cuts boundary half-edge `h` in three: the rule of [`crate::scheme::Sqrt3`].
-fn third(c: &impl Connectivity, h: u32, second: bool, sharp: &impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
+fn third<C: Connectivity>(c: &C, h: u32, second: bool, tags: Tags<'_>) -> Vec<(u32, f64)> {
     let (a, b) = (c.origin(h), c.origin(c.next(h)));
     let (near, far) = if second { (b, a) } else { (a, b) };
-    if sharp(near) {
-        return vec![(near, 18.0 / 27.0), (far, 9.0 / 27.0)];
+    match along_curve(c, h, tags)[usize::from(second)] {
+        None => vec![(near, 18.0 / 27.0), (far, 9.0 / 27.0)],
+        Some(beyond) => vec![(near, 16.0 / 27.0), (far, 10.0 / 27.0), (beyond, 1.0 / 27.0)],
     }
-    let beyond = if second {
-        c.origin(c.next(c.vertex_half_edge(b)))
-    } else {
-        c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving))
-    };
-    vec![(near, 16.0 / 27.0), (far, 10.0 / 27.0), (beyond, 1.0 / 27.0)]
 }

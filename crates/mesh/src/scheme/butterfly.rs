@@ -12,11 +12,11 @@
 //! The weights are the same at every valence, which leaves the limit C1 only where valences are six (and four to seven in
 //! practice; [`super::ModifiedButterfly`] mends the rest). A wing beyond a boundary is the reflection of the triangle before
 //! it, which keeps linear functions linear. The boundary is the four-point curve of the same authors (-1, 9, 9, -1) / 16;
-//! at a corner it ends, as if it went straight on.
+//! at a corner it ends, as if it went straight on. Creases are boundaries from both sides ([`crate::apart`]).
 //!
 //! Cost: about 14 ns an output face.
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
+use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags, along_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -42,6 +42,8 @@ impl Scheme for Butterfly {
             domain: Domain::Number { low: 0.0, high: 0.125, default: 0.0625 },
         }],
     };
+
+    const CREASES: Creasing = Creasing::Apart;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
@@ -81,12 +83,13 @@ fn beyond<C: Connectivity>(c: &C, h: u32, weight: f64, row: &mut impl Row) {
     }
 }
 
-/// The four-point rule on boundary half-edge `h`: 1/2 + w of its ends, -w of the vertices before and after. A corner's
-/// curve goes straight on behind it.
+/// The four-point rule on boundary half-edge `h`: 1/2 + w of its ends, -w of the vertices before and after. Where the curve
+/// ends, at a corner, it goes straight on behind it.
 #[inline(never)]
 pub(super) fn four_points<C: Connectivity>(c: &C, h: u32, w: f64, tags: Tags<'_>, row: &mut impl Row) {
     let (a, b) = (c.origin(h), c.origin(c.next(h)));
-    let (at_a, at_b) = (tags.is_sharp(c, a), tags.is_sharp(c, b));
+    let ends = along_curve(c, h, tags);
+    let [at_a, at_b] = ends.map(|end| end.is_none());
     // The virtual vertex behind a sharp end a is 2 a - b.
     let share = |own: bool, other: bool| 0.5 + w - if own { 2.0 * w } else { 0.0 } + if other { w } else { 0.0 };
     if at_a == at_b {
@@ -95,12 +98,9 @@ pub(super) fn four_points<C: Connectivity>(c: &C, h: u32, w: f64, tags: Tags<'_>
         row.vertex(a, share(at_a, at_b));
         row.vertex(b, share(at_b, at_a));
     }
-    let before = || c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving));
-    let after = || c.origin(c.next(c.vertex_half_edge(b)));
-    match (at_a, at_b) {
-        (false, false) => row.pair(before(), after(), -w),
-        (false, true) => row.vertex(before(), -w),
-        (true, false) => row.vertex(after(), -w),
-        (true, true) => {}
+    match ends {
+        [Some(before), Some(after)] => row.pair(before, after, -w),
+        [Some(end), None] | [None, Some(end)] => row.vertex(end, -w),
+        [None, None] => {}
     }
 }

@@ -56,9 +56,6 @@ const INFO: Info = Info {
     ],
 };
 
-/// What each of the schemes does.
-const HONOURS: Honours = Honours { creases: true, corners: true };
-
 /// The entry.
 pub(super) const fn fractal() -> Entry {
     if !crate::FULL {
@@ -66,7 +63,7 @@ pub(super) const fn fractal() -> Entry {
             info: INFO,
             common: false,
             limit: LimitRule::Analysis,
-            honours: HONOURS,
+            honours: Honours::ALL,
             eval: |_, _, _, _| (),
             record: |_, _, _, _| (),
         };
@@ -75,7 +72,7 @@ pub(super) const fn fractal() -> Entry {
         info: INFO,
         common: false,
         limit: LimitRule::Analysis,
-        honours: HONOURS,
+        honours: Honours::ALL,
         eval: |level, split, tags, sink| rules(level, split, tags, sink),
         record: |level, split, tags, sink| rules(level, split, tags, sink),
     }

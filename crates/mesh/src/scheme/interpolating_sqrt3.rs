@@ -19,12 +19,14 @@
 //! its boundary edge: p + q - r. (The weights of one and two edges are those that OpenMesh states. Its figures agree where
 //! they do not depend on where a face's list of vertices begins: not in triangles with two boundary edges.)
 //!
+//! Infinitely sharp edges are boundaries from both sides, as in sqrt3.
+//!
 //! C1. Cost: linear; wider stencils than sqrt3. Limit: like every interpolating scheme it ripples where a mesh is not smooth.
 
-use super::{Accepts, Family, Info, Scheme, Tags};
+use super::{Accepts, Creasing, Family, Info, Scheme, Tags, along_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
-use crate::topology::{Connectivity, is_boundary, is_rim};
+use crate::topology::{Connectivity, is_boundary};
 use std::f64::consts::PI;
 
 /// See the module.
@@ -44,13 +46,15 @@ impl Scheme for InterpolatingSqrt3 {
         params: &[],
     };
 
+    const CREASES: Creasing = Creasing::ApartForEver;
+
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         let trisect = split == (Split::Sqrt3 { trisect: true });
         let (old, faces) = (c.vertices(), c.faces());
         sink.pass(old, faces, |f, row| {
             let corners = c.face_half_edges(f);
             let on_boundary = |h: &u32| is_boundary(c.twin(*h));
-            if let Some(h) = corners.clone().find(|&h| trisect && is_rim(c, h)) {
+            if let Some(h) = corners.clone().find(|&h| trisect && c.is_rim(h)) {
                 return third(c, h, false, tags, row);
             }
             match corners.clone().find(on_boundary) {
@@ -107,11 +111,11 @@ fn behind<C: Connectivity>(c: &C, h: u32, row: &mut impl Row) {
 /// `weight` times the rule of the ring of the vertex that `h` leaves, of valence `n`.
 fn ring<C: Connectivity>(c: &C, h: u32, n: u32, weight: f64, row: &mut impl Row) {
     row.vertex(c.origin(h), weight * own(n));
-    let mut spoke = h;
-    for j in 0..n {
+    let mut j = 0;
+    c.turn_from(h, |spoke| {
         row.vertex(c.origin(c.next(spoke)), weight * neighbour(n, j));
-        spoke = c.twin(c.prev(spoke));
-    }
+        j += 1;
+    });
 }
 
 fn own(n: u32) -> f64 {
@@ -171,20 +175,17 @@ fn two_edges(between: u32, others: [u32; 2], across: u32, row: &mut impl Row) {
 #[inline(never)]
 fn third<C: Connectivity>(c: &C, h: u32, second: bool, tags: Tags<'_>, row: &mut impl Row) {
     let (a, b) = (c.origin(h), c.origin(c.next(h)));
-    let before = c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving));
-    let after = c.origin(c.next(c.vertex_half_edge(b)));
+    let [before, after] = along_curve(c, h, tags);
     let (near, far, behind, beyond) = if second { (b, a, after, before) } else { (a, b, before, after) };
     // Straight on behind a corner: twice the corner less its neighbour.
     let (mut of_near, mut of_far) = (60.0, 30.0);
-    if tags.is_sharp(c, near) {
-        (of_near, of_far) = (of_near - 10.0, of_far + 5.0);
-    } else {
-        row.vertex(behind, -5.0 / 81.0);
+    match behind {
+        None => (of_near, of_far) = (of_near - 10.0, of_far + 5.0),
+        Some(behind) => row.vertex(behind, -5.0 / 81.0),
     }
-    if tags.is_sharp(c, far) {
-        (of_near, of_far) = (of_near + 4.0, of_far - 8.0);
-    } else {
-        row.vertex(beyond, -4.0 / 81.0);
+    match beyond {
+        None => (of_near, of_far) = (of_near + 4.0, of_far - 8.0),
+        Some(beyond) => row.vertex(beyond, -4.0 / 81.0),
     }
     row.vertex(near, of_near / 81.0);
     row.vertex(far, of_far / 81.0);

@@ -11,10 +11,10 @@
 //! ```
 //!
 //! Boundaries are the J-spline of their curve: the same with the two neighbours along it (s = 0 is the four-point curve, s =
-//! 1 the cubic B-spline). With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
+//! 1 the cubic B-spline). Creases are boundaries from both sides ([`crate::apart`]), a choice of this house. With `move=off` vertices are left where they were, whatever s: what Powell's program did, which
 //! never stored the moved vertices, oscillation and all. Cost: about 50 ns an output face (two rings an edge).
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
+use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags, along_curve};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -49,6 +49,8 @@ impl Scheme for JSpline {
         ],
     };
 
+    const CREASES: Creasing = Creasing::Apart;
+
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         let [s, still, _] = tags.params;
@@ -61,30 +63,31 @@ impl Scheme for JSpline {
                 return;
             }
             row.pair(a, b, 0.5);
-            laplacian(c, a, pull, tags, row);
-            laplacian(c, b, pull, tags, row);
+            laplacian(c, h, pull, tags, row);
+            laplacian(c, c.twin(h), pull, tags, row);
         });
         sink.pass(0, c.vertices(), |v, row| {
             if still == 0.0 {
-                laplacian(c, v, s / 4.0, tags, row);
+                laplacian(c, c.vertex_half_edge(v), s / 4.0, tags, row);
             }
             row.vertex(v, 1.0);
         });
     }
 }
 
-/// Adds `weight` times L(v): of the ring, or of the boundary's curve; nothing at a sharp vertex.
+/// Adds `weight` times L of the vertex that `h` leaves: of the ring, or of the boundary's curve; nothing at a sharp vertex.
 #[inline(never)]
-fn laplacian<C: Connectivity>(c: &C, v: u32, weight: f64, tags: Tags<'_>, row: &mut impl Row) {
+fn laplacian<C: Connectivity>(c: &C, h: u32, weight: f64, tags: Tags<'_>, row: &mut impl Row) {
+    let v = c.origin(h);
     if tags.is_sharp(c, v) {
         return;
     }
-    let start = c.vertex_half_edge(v);
+    let start = c.first_spoke(h);
     let mut k = 0.0;
-    let arriving = c.turn(v, |_| k += 1.0);
+    let arriving = c.turn_from(start, |_| k += 1.0);
     match arriving {
         Some(arriving) => row.pair(c.origin(c.next(start)), c.origin(arriving), weight / 2.0),
-        None => _ = c.turn(v, |h| row.vertex(c.origin(c.next(h)), weight / k)),
+        None => _ = c.turn_from(start, |h| row.vertex(c.origin(c.next(h)), weight / k)),
     }
     row.vertex(v, -weight);
 }
@@ -93,24 +96,22 @@ fn laplacian<C: Connectivity>(c: &C, v: u32, weight: f64, tags: Tags<'_>, row: &
 #[inline(never)]
 fn boundary_point<C: Connectivity>(c: &C, h: u32, pull: f64, tags: Tags<'_>, row: &mut impl Row) {
     let (a, b) = (c.origin(h), c.origin(c.next(h)));
-    let (at_a, at_b) = (tags.is_sharp(c, a), tags.is_sharp(c, b));
-    let before = || c.turn(a, |_| {}).map_or(a, |arriving| c.origin(arriving));
-    let after = || c.origin(c.next(c.vertex_half_edge(b)));
-    match (at_a, at_b) {
-        (true, true) => row.pair(a, b, 0.5),
-        (false, false) => {
+    // Where the curve ends nothing pulls.
+    match along_curve(c, h, tags) {
+        [None, None] => row.pair(a, b, 0.5),
+        [Some(before), Some(after)] => {
             row.pair(a, b, 0.5 - pull / 2.0);
-            row.pair(before(), after(), pull / 2.0);
+            row.pair(before, after, pull / 2.0);
         }
-        (false, true) => {
+        [Some(before), None] => {
             row.vertex(a, 0.5 - pull);
             row.vertex(b, 0.5 + pull / 2.0);
-            row.vertex(before(), pull / 2.0);
+            row.vertex(before, pull / 2.0);
         }
-        (true, false) => {
+        [None, Some(after)] => {
             row.vertex(a, 0.5 + pull / 2.0);
             row.vertex(b, 0.5 - pull);
-            row.vertex(after(), pull / 2.0);
+            row.vertex(after, pull / 2.0);
         }
     }
 }

@@ -24,7 +24,7 @@
 //!
 //! A boundary is the four-point curve of its own vertices ([`super::Boundary`] says what corners do). Behind a boundary
 //! vertex p lies 2p - the mean of its inner neighbours, behind a boundary edge's point the reflection of the point across
-//! the face. The paper takes quads only. Other faces are taken here for the one step after which there are none: k_i of
+//! the face. Creases are boundaries from both sides ([`crate::apart`]). The paper takes quads only. Other faces are taken here for the one step after which there are none: k_i of
 //! such a face completes a parallelogram, its point is 9/8 of the mean of its edge points - 1/8 of the mean of those
 //! beyond, which on quads is the rule above.
 //!
@@ -33,7 +33,7 @@
 //! 50 ns an output face.
 
 use super::butterfly::four_points;
-use super::{Accepts, Family, Info, Scheme, Tags};
+use super::{Accepts, Creasing, Family, Info, Scheme, Tags};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -59,6 +59,8 @@ impl Scheme for Kobbelt {
         interpolating: true,
         params: &[],
     };
+
+    const CREASES: Creasing = Creasing::Apart;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
@@ -112,27 +114,28 @@ fn across<C: Connectivity>(c: &C, h: u32) -> Option<u32> {
 /// Adds -w of the point behind the origin of inner half-edge `h`. Cost: the valence.
 #[inline(never)]
 fn behind<C: Connectivity>(c: &C, h: u32, row: &mut impl Row) {
-    let p = c.origin(h);
+    let (p, start) = (c.origin(h), c.first_spoke(h));
     let mut faces = 0u32;
-    let arriving = c.turn(p, |_| faces += 1);
+    let arriving = c.turn_from(start, |_| faces += 1);
     if arriving.is_some() {
-        let start = c.vertex_half_edge(p);
         let share = W / f64::from(faces - 1);
         row.vertex(p, -2.0 * W);
-        c.turn(p, |spoke| {
+        c.turn_from(start, |spoke| {
             if spoke != start {
                 row.vertex(c.origin(c.next(spoke)), share);
             }
         });
         return;
     }
-    let onward = |spoke: u32| c.twin(c.prev(spoke));
-    if faces == 4 {
-        return row.vertex(c.origin(c.next(onward(onward(h)))), -W);
-    }
-    let mean = 4.0 / f64::from(faces);
-    let mut spoke = h;
-    for j in 0..faces {
+    let (mean, mut j) = (4.0 / f64::from(faces), 0);
+    c.turn_from(h, |spoke| {
+        if faces == 4 {
+            if j == 2 {
+                row.vertex(c.origin(c.next(spoke)), -W);
+            }
+            j += 1;
+            return;
+        }
         // How many of the places the ring has at j, counted from `h`.
         let at = |places: &[u32]| places.iter().filter(|&&p| p % faces == j).count() as f64;
         let l = mean - at(&[0, 1, faces - 1]);
@@ -145,6 +148,6 @@ fn behind<C: Connectivity>(c: &C, h: u32, row: &mut impl Row) {
                 row.vertex(p, W * k);
             }
         }
-        spoke = onward(spoke);
-    }
+        j += 1;
+    });
 }

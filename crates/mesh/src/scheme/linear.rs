@@ -13,7 +13,7 @@
 //!
 //! Cost: about 8 ns an output face. Limit: it never smooths.
 
-use super::{Accepts, Family, Info, Scheme, Tags, face_centroids};
+use super::{Accepts, Creasing, Family, Info, Scheme, Tags, face_centroids};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -37,7 +37,7 @@ impl Scheme for Linear {
     };
 
     const COMMON: bool = true;
-    const CREASES: bool = true;
+    const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     #[inline(always)]

@@ -51,6 +51,7 @@ pub use tri_to_quad::TriToQuad;
 pub(crate) use loop_::weight as loop_weight;
 
 use crate::FULL;
+use crate::apart;
 use crate::crease::{self, Creases};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
@@ -285,12 +286,8 @@ impl Tags<'_> {
         if FULL && self.creases.is_some_and(|creases| creases.keeps(v)) {
             return true;
         }
-        if self.rules.boundary != Boundary::EdgeAndCorner {
-            return false;
-        }
-        let start = c.vertex_half_edge(v);
-        let lone = is_boundary(c.twin(start)) && is_boundary(c.twin(c.prev(start)));
-        lone && !self.joined.get(v as usize).is_some_and(|&joined| joined)
+        let joined = || self.joined.get(v as usize).is_some_and(|&joined| joined);
+        c.is_pinned(v) || (self.rules.boundary == Boundary::EdgeAndCorner && c.is_tip(v) && !joined())
     }
 }
 
@@ -302,8 +299,8 @@ pub trait Scheme: 'static {
     /// without the feature `full`.
     const COMMON: bool = false;
 
-    /// Whether sharp and semi-sharp edges and vertices mean to it what [`crate::crease`] says, or nothing is smoothed anyway.
-    const CREASES: bool = false;
+    /// How it takes sharp edges and vertices.
+    const CREASES: Creasing = Creasing::None;
 
     /// How the limit of its vertices is found.
     const LIMIT: LimitRule = LimitRule::Analysis;
@@ -315,13 +312,40 @@ pub trait Scheme: 'static {
 type EvalFn = fn(&Level<'_>, Split, Tags<'_>, &mut Eval<'_>);
 type RecordFn = fn(&Level<'_>, Split, Tags<'_>, &mut Record<'_>);
 
+/// How a scheme takes sharp edges and vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Creasing {
+    /// Not at all.
+    None,
+    /// Its rules ask [`crate::crease`], or it smooths nothing anyway.
+    Rules,
+    /// As the rim of a mesh that is cut there ([`crate::apart`]), semi-sharp ones as far as they are sharp.
+    Apart,
+    /// The same, but only what is infinitely sharp.
+    ApartForEver,
+}
+
+impl Creasing {
+    /// Whether rules of rims are taken for creases.
+    pub(crate) const fn is_apart(self) -> bool {
+        FULL && matches!(self, Creasing::Apart | Creasing::ApartForEver)
+    }
+}
+
 /// Which marks of a mesh mean something to a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Honours {
-    /// Sharp and semi-sharp edges, and semi-sharp vertices.
+    /// Infinitely sharp edges.
     pub creases: bool,
+    /// Semi-sharp edges and vertices.
+    pub semi_sharp: bool,
     /// Infinitely sharp vertices: they stay where they are.
     pub corners: bool,
+}
+
+impl Honours {
+    /// Everything.
+    const ALL: Honours = Honours { creases: true, semi_sharp: true, corners: true };
 }
 
 /// A scheme in the registry: its facts, and its rules compiled for every sink.
@@ -353,7 +377,11 @@ const fn entry<S: Scheme>() -> Entry {
         if S::COMMON || FULL { eval::<S> } else { |_, _, _, _| unreachable!("this build has not these rules") };
     let record: RecordFn = if FULL { record::<S> } else { |_, _, _, _| unreachable!("this build records no rows") };
     let corners = !matches!(S::INFO.family, Family::Dual | Family::MidEdge);
-    let honours = Honours { creases: S::CREASES, corners };
+    let honours = Honours {
+        creases: !matches!(S::CREASES, Creasing::None),
+        semi_sharp: matches!(S::CREASES, Creasing::Rules | Creasing::Apart),
+        corners,
+    };
     // Papers are told about by the build that has their rules.
     let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
     Entry { info, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
@@ -364,18 +392,30 @@ fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut E
     // What a scheme's own split stores is met in full only.
     let implicit = matches!(S::INFO.family, Family::Primal | Family::Mixed | Family::Quads);
     match (level, S::INFO.accepts) {
-        (Level::Base(c), _) => S::rules(*c, split, tags, sink),
-        (Level::Quads(c), accepts) if implicit && accepts != Accepts::Triangles => S::rules(*c, split, tags, sink),
-        (Level::Triangles(c), accepts) if implicit && accepts != Accepts::Polygons => S::rules(*c, split, tags, sink),
+        (Level::Base(c), _) => rules::<S, _, _>(*c, split, tags, sink),
+        (Level::Quads(c), accepts) if implicit && accepts != Accepts::Triangles => {
+            rules::<S, _, _>(*c, split, tags, sink)
+        }
+        (Level::Triangles(c), accepts) if implicit && accepts != Accepts::Polygons => {
+            rules::<S, _, _>(*c, split, tags, sink)
+        }
         _ => unreachable!("a step says when it needs stored half-edges"),
     }
 }
 
 fn record<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut Record<'_>) {
     match (level, S::INFO.family) {
-        (level, Family::Primal | Family::Mixed | Family::Quads) => S::rules(level, split, tags, sink),
-        (Level::Base(c), _) => S::rules(*c, split, tags, sink),
+        (level, Family::Primal | Family::Mixed | Family::Quads) => rules::<S, _, _>(level, split, tags, sink),
+        (Level::Base(c), _) => rules::<S, _, _>(*c, split, tags, sink),
         _ => unreachable!("a step says when it needs stored half-edges"),
+    }
+}
+
+/// States the rules on `c`, or on `c` cut along its creases.
+#[inline(always)]
+fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
+    if !FULL || !apart::rules::<S, C, K>(c, split, tags, sink) {
+        S::rules(c, split, tags, sink);
     }
 }
 
@@ -452,6 +492,19 @@ fn kept_or_curve<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>, row: &mut impl
         row.vertex(v, 0.75);
     }
     true
+}
+
+/// The neighbours of boundary half-edge `h` along its curve, the vertex before its origin and the one behind its target; none
+/// where the curve ends: at what is sharp, and at a dart.
+#[inline(never)]
+pub(crate) fn along_curve<C: Connectivity>(c: &C, h: u32, tags: Tags<'_>) -> [Option<u32>; 2] {
+    let (a, n) = (c.origin(h), c.next(h));
+    let before = || c.turn_from(h, |_| {}).map(|arriving| c.origin(arriving));
+    let after = || {
+        let spoke = c.first_spoke(n);
+        is_boundary(c.twin(spoke)).then(|| c.origin(c.next(spoke)))
+    };
+    [if tags.is_sharp(c, a) { None } else { before() }, if tags.is_sharp(c, c.origin(n)) { None } else { after() }]
 }
 
 /// States the rule of `v` with its marks; `smooth` states the scheme's own, of inner vertices.

@@ -15,7 +15,7 @@
 //!
 //! Cost: linear, as the other stored splits. Limit: it never smooths; n is at most 16.
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags};
+use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::{Split, n_way::Grid};
@@ -43,7 +43,7 @@ impl Scheme for NWay {
         }],
     };
 
-    const CREASES: bool = true;
+    const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -15,7 +15,8 @@
 //! they are here. Along a boundary lies the quadratic B-spline of its own intervals: with E = (d(j, i) P_i + d(i, j) P_j) /
 //! (d(i, j) + d(j, i)) on an edge, its new points are (P_i + E)/2. Corners are as in Doo-Sabin.
 //!
-//! An interval of 0 pulls the surface to its vertex, or makes a crease of a row of them, as a double knot does. Where all of
+//! An interval of 0 pulls the surface to its vertex, as a double knot does; intervals of 0 at the vertices of a row, toward those
+//! beside it, make a crease of the row. Where all of
 //! a face's c are 0 (two zero intervals in a row; a knot too many) the formula says nothing, and the face is treated as if its
 //! intervals were equal; so is a boundary edge with two zeros. Dual splits carry intervals to the next level, other splits
 //! forget them. C1 for positive intervals. Cost: as Doo-Sabin, twice as much where there are intervals.

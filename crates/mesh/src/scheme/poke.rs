@@ -11,7 +11,7 @@
 //! What was not a triangle is one after the first step, on any polygons: the plainest way to a scheme that takes triangles only.
 //! Cost: linear, as the other stored splits. Limit: angles shrink with every level, it never smooths, and rims stay as coarse as they are.
 
-use super::{Accepts, Family, Info, Scheme, Tags, face_centroids};
+use super::{Accepts, Creasing, Family, Info, Scheme, Tags, face_centroids};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -34,7 +34,7 @@ impl Scheme for Poke {
         params: &[],
     };
 
-    const CREASES: bool = true;
+    const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
 
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

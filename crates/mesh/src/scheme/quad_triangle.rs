@@ -22,7 +22,9 @@
 //! makes the seam C2, is not part of it). Cost: linear; pure meshes run Loop or Catmull-Clark.
 
 use super::loop_::beta;
-use super::{Accepts, CatmullClark, Entry, Family, Honours, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point};
+use super::{
+    Accepts, CatmullClark, Creasing, Entry, Family, Honours, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point,
+};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -40,7 +42,7 @@ pub(super) const fn quad_triangle() -> Entry {
     Entry {
         info: QuadTriangle::INFO,
         common: QuadTriangle::COMMON,
-        honours: Honours { creases: true, corners: true },
+        honours: Honours::ALL,
         limit: QuadTriangle::LIMIT,
         eval: |level, split, tags, sink| match split {
             Split::Quad => (QUADS.eval)(level, split, tags, sink),
@@ -68,7 +70,7 @@ impl Scheme for QuadTriangle {
         params: &[],
     };
 
-    const CREASES: bool = true;
+    const CREASES: Creasing = Creasing::Rules;
 
     /// States the mixed split's rules.
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {

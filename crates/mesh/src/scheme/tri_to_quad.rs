@@ -18,7 +18,7 @@
 //!
 //! Takes triangles, and quads as it leaves them. C2 but at extraordinary vertices. Cost: linear, as Catmull-Clark.
 
-use super::{Accepts, Domain, Family, Info, Param, Scheme, Tags, edge_point, face_centroids, vertex_point};
+use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags, edge_point, face_centroids, vertex_point};
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::Connectivity;
@@ -45,7 +45,7 @@ impl Scheme for TriToQuad {
         }],
     };
 
-    const CREASES: bool = true;
+    const CREASES: Creasing = Creasing::Rules;
 
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {
         let still = tags.params[0] != 0.0;

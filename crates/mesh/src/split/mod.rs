@@ -32,6 +32,8 @@ pub use quad::QuadLevel;
 pub use stored::FaceKind;
 pub use triangle::TriangleLevel;
 
+use crate::apart::Apart;
+use crate::crease::Creases;
 use crate::topology::Connectivity;
 
 /// The splits there are.
@@ -199,11 +201,14 @@ impl Split {
         }
     }
 
-    /// The faces of the next level, for splits that store it. `c` is a stored level.
-    pub(crate) fn cut(self, c: &crate::Topology) -> stored::Cut {
+    /// The faces of the next level, for splits that store it. `c` is a stored level, `creases` its own.
+    pub(crate) fn cut(self, c: &crate::Topology, creases: Option<&Creases>) -> stored::Cut {
         match self {
             _ if !crate::FULL => unreachable!("no scheme of this build stores levels"),
-            Split::Sqrt3 { trisect } => stored::sqrt3(c, trisect),
+            Split::Sqrt3 { trisect } => match creases {
+                Some(creases) => stored::sqrt3(&Apart::turned(c, creases), c, trisect),
+                None => stored::sqrt3(c, c, trisect),
+            },
             Split::Mixed => mixed::cut(c, &self.lone(c)),
             Split::MidEdge { cut, .. } => mid_edge::faces(c, cut, &self.lone(c)),
             Split::Poke => poke::faces(c),

@@ -26,9 +26,14 @@
 //!         b0-P1-P2-b1
 //! ```
 //!
+//! Sqrt3 on a crease (Kobbelt's feature lines): two rims that lie on each other. Its edges are not turned, and cut in three
+//! where rims are. Both faces have a point of their own there: P2 of one is P1 of the other, and no vertex more than else.
+//!
 //! Others have files of their own. Cost: linear. Twins are arithmetic.
 
+use crate::apart::Apart;
 use crate::connect::UNMATCHED;
+use crate::crease::Creases;
 use crate::topology::{Connectivity, Topology, boundary_rank, is_boundary};
 
 /// What a child face was made from.
@@ -69,13 +74,33 @@ impl Cut {
     }
 
     /// The half-edges of these faces, `vertices` in all.
-    pub fn connect(&self, parent: &Topology, split: super::Split, vertices: u32) -> Topology {
-        let mate = match split {
-            super::Split::Sqrt3 { trisect } => mates(parent, trisect),
-            super::Split::Mixed => super::mixed::mates(parent),
-            super::Split::MidEdge { cut, .. } => super::mid_edge::mates(parent, cut, &split.lone(parent)),
-            super::Split::Poke => super::poke::mates(parent),
-            super::Split::NWay { n, triangles } => super::n_way::mates(parent, n, triangles),
+    pub fn connect(
+        &self,
+        parent: &Topology,
+        split: super::Split,
+        vertices: u32,
+        creases: Option<&Creases>,
+    ) -> Topology {
+        let mate = match (split, creases) {
+            (super::Split::Sqrt3 { trisect }, Some(creases)) => {
+                let apart = Apart::turned(parent, creases);
+                let mut mate = mates(&apart, trisect);
+                for h in (0..parent.half_edges()).filter(|&h| is_crease(&apart, parent, h)) {
+                    let t = parent.twin(h);
+                    mate[3 * h as usize] = 3 * t;
+                    if trisect {
+                        // The third at the origin of h.
+                        let [own, other] = [3 * parent.twin(parent.prev(h)), 3 * parent.next(t) + 2];
+                        (mate[own as usize], mate[other as usize]) = (other, own);
+                    }
+                }
+                mate
+            }
+            (super::Split::Sqrt3 { trisect }, None) => mates(parent, trisect),
+            (super::Split::Mixed, _) => super::mixed::mates(parent),
+            (super::Split::MidEdge { cut, .. }, _) => super::mid_edge::mates(parent, cut, &split.lone(parent)),
+            (super::Split::Poke, _) => super::poke::mates(parent),
+            (super::Split::NWay { n, triangles }, _) => super::n_way::mates(parent, n, triangles),
             _ => self.dual_mates(parent, &split.lone(parent)),
         };
         Topology::manifold(self.offsets.clone(), self.corners.clone(), vertices, mate)
@@ -211,14 +236,27 @@ pub(crate) fn dual_knots(c: &Topology, knots: &[f32], rounded: &[u32]) -> Vec<f3
     out
 }
 
-/// The triangles of the sqrt3 split, one a half-edge and in their order.
-pub(crate) fn sqrt3(c: &Topology, trisect: bool) -> Cut {
+/// Whether `h` lies on a crease of `whole`, of which `c` is what is seen.
+fn is_crease(c: &impl Connectivity, whole: &Topology, h: u32) -> bool {
+    is_boundary(c.twin(h)) && !is_boundary(whole.twin(h))
+}
+
+/// The half-edges of the children of half-edge `h` on a crease, after the sqrt3 split: it, or its thirds.
+pub(crate) fn sqrt3_thirds(c: &impl Connectivity, h: u32, trisect: bool) -> Vec<u32> {
+    if trisect { vec![3 * c.twin(c.prev(h)), 3 * h, 3 * c.next(h) + 2] } else { vec![3 * h] }
+}
+
+/// The triangles of the sqrt3 split, one a half-edge and in their order. `c` is `whole`, or that seen cut along its creases.
+pub(crate) fn sqrt3(c: &impl Connectivity, whole: &Topology, trisect: bool) -> Cut {
     let h = c.half_edges();
     let mut cut = Cut::with_room(h as usize, 3 * h as usize, false);
     let (old, faces) = (c.vertices(), c.faces());
     // What half-edge h takes for the centre of its face.
     let centre = |h: u32| match c.twin(c.prev(h)) {
-        t if trisect && is_boundary(t) => old + faces + boundary_rank(t),
+        t if trisect && is_boundary(t) => match whole.twin(c.prev(h)) {
+            t if is_boundary(t) => old + faces + boundary_rank(t),
+            t => old + c.face(t),
+        },
         _ => old + c.face(h),
     };
     for h in 0..h {
@@ -234,7 +272,7 @@ pub(crate) fn sqrt3(c: &Topology, trisect: bool) -> Cut {
 }
 
 /// The twins of [`sqrt3`]'s triangles.
-fn mates(c: &Topology, trisect: bool) -> Vec<u32> {
+fn mates(c: &impl Connectivity, trisect: bool) -> Vec<u32> {
     let mut mate = vec![UNMATCHED; 3 * c.half_edges() as usize];
     for h in 0..c.half_edges() {
         let (n, p, t) = (c.next(h), c.prev(h), c.twin(h));
@@ -293,12 +331,12 @@ mod tests {
                 let mut level = mesh.topology.clone();
                 for step in 0..3 {
                     let split = split.at(step);
-                    let (cut, vertices) = (split.cut(&level), split.children(&level));
+                    let (cut, vertices) = (split.cut(&level, None), split.children(&level));
                     let mut corners = cut.corners.clone();
                     let matched = connect::connect(&cut.offsets, &mut corners, &mut Vec::new(), vertices as usize);
                     let (expected, _) =
                         Topology::assemble(cut.offsets.clone(), &corners, vertices as usize, &matched.mate);
-                    level = cut.connect(&level, split, vertices);
+                    level = cut.connect(&level, split, vertices, None);
                     assert_eq!(level, expected, "{split:?}, step {step}");
                 }
             }
