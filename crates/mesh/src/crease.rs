@@ -414,7 +414,7 @@ impl Creases {
 }
 
 /// A vertex's rule in parts that make one together: the scheme's own rule, the crease through it, the vertex itself.
-struct Parts {
+pub(crate) struct Parts {
     /// In that order.
     share: [f64; 3],
     /// The vertices at the crease's ends.
@@ -433,7 +433,7 @@ fn part(sharp: bool, edges: usize) -> usize {
 
 /// The rule of a marked vertex, both levels' taken together.
 #[inline(never)]
-fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
+pub(crate) fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
     let mut parts = Parts { share: [0.0, 0.0, 1.0], ends: [v; 2] };
     let Some(creases) = tags.creases else { return parts };
     if tags.is_sharp(c, v) {
@@ -504,51 +504,33 @@ fn parts<C: Connectivity>(c: &C, v: u32, tags: &Tags<'_>) -> Parts {
     parts
 }
 
-/// States the rule of a marked vertex; `smooth` states the scheme's own.
-#[inline(never)]
-pub(crate) fn vertex_point<C: Connectivity, R: Row>(
-    c: &C,
-    v: u32,
-    tags: &Tags<'_>,
-    row: &mut R,
-    smooth: impl Fn(&mut R),
-) {
-    let Parts { share: [rest, curve, own], ends } = parts(c, v, tags);
-    if rest > 0.0 {
-        smooth(row);
+impl Parts {
+    /// Whether the scheme's own rule has a part.
+    pub(crate) fn has_smooth(&self) -> bool {
+        self.share[0] > 0.0
+    }
+
+    /// States the rule of `v`, behind the scheme's own where that has a part.
+    #[inline(always)]
+    pub(crate) fn state(self, v: u32, row: &mut impl Row) {
+        let Parts { share: [rest, curve, own], ends } = self;
         if rest == 1.0 {
             return;
         }
-        row.scale(rest);
+        if rest > 0.0 {
+            row.scale(rest);
+        }
+        if curve > 0.0 {
+            row.vertex(ends[0], 0.125 * curve);
+            row.vertex(ends[1], 0.125 * curve);
+        }
+        row.vertex(v, own + 0.75 * curve);
     }
-    if curve > 0.0 {
-        row.vertex(ends[0], 0.125 * curve);
-        row.vertex(ends[1], 0.125 * curve);
-    }
-    row.vertex(v, own + 0.75 * curve);
-}
-
-/// States the point of the sharp edge of `h`; `smooth` states the scheme's own.
-#[inline(never)]
-pub(crate) fn edge_point<C: Connectivity, R: Row>(
-    c: &C,
-    h: u32,
-    tags: &Tags<'_>,
-    row: &mut R,
-    smooth: impl Fn(&mut R),
-) {
-    let sharp = edge_share(c, h, tags);
-    if sharp != 1.0 {
-        smooth(row);
-        row.scale(1.0 - sharp);
-    }
-    row.vertex(c.origin(h), 0.5 * sharp);
-    row.vertex(c.origin(c.next(h)), 0.5 * sharp);
 }
 
 /// By how much the edge of `h`, not on a boundary, is a crease in this step.
-#[inline(always)]
-fn edge_share<C: Connectivity>(c: &C, h: u32, tags: &Tags<'_>) -> f64 {
+#[inline(never)]
+pub(crate) fn edge_share<C: Connectivity>(c: &C, h: u32, tags: &Tags<'_>) -> f64 {
     let Some(creases) = tags.creases else { return 0.0 };
     let s = creases.along(c, h);
     let half = |end: u32| creases.half(c, c.origin(end), s, tags.rules.decay);

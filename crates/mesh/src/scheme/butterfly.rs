@@ -51,7 +51,7 @@ impl Scheme for Butterfly {
         sink.pass(split.first_edge_point(c), c.edges(), |e, row| {
             let h = c.edge_half_edge(e);
             if is_boundary(c.twin(h)) {
-                four_points(c, h, w, tags, row);
+                row.apart(|row| four_points(c, h, w, tags, row));
             } else {
                 eight_points(c, h, w, row);
             }
@@ -72,15 +72,20 @@ pub(super) fn eight_points<C: Connectivity>(c: &C, h: u32, w: f64, row: &mut imp
 }
 
 /// Adds the vertex opposite to `h` in the neighbouring triangle; beyond a boundary the reflection of the one before it.
-#[inline(never)]
+#[inline(always)]
 fn beyond<C: Connectivity>(c: &C, h: u32, weight: f64, row: &mut impl Row) {
     let twin = c.twin(h);
     if is_boundary(twin) {
-        row.pair(c.origin(h), c.origin(c.next(h)), weight);
-        row.vertex(c.origin(c.prev(h)), -weight);
+        row.apart(|row| reflect(c, h, weight, row));
     } else {
         row.vertex(c.origin(c.prev(twin)), weight);
     }
+}
+
+#[inline(never)]
+fn reflect<C: Connectivity>(c: &C, h: u32, weight: f64, row: &mut impl Row) {
+    row.pair(c.origin(h), c.origin(c.next(h)), weight);
+    row.vertex(c.origin(c.prev(h)), -weight);
 }
 
 /// The four-point rule on boundary half-edge `h`: 1/2 + w of its ends, -w of the vertices before and after. Where the curve

@@ -52,7 +52,7 @@ pub(crate) use loop_::weight as loop_weight;
 
 use crate::FULL;
 use crate::apart;
-use crate::crease::{self, Creases};
+use crate::crease::{self, Creases, Parts};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{FaceShape, Level, Split, Triangles};
@@ -510,10 +510,20 @@ pub(crate) fn along_curve<C: Connectivity>(c: &C, h: u32, tags: Tags<'_>) -> [Op
 /// States the rule of `v` with its marks; `smooth` states the scheme's own, of inner vertices.
 #[inline(always)]
 fn vertex_point<C: Connectivity, R: Row>(c: &C, v: u32, tags: &Tags<'_>, row: &mut R, smooth: impl Fn(&mut R)) {
-    match tags.creases {
-        Some(creases) if FULL && creases.marked(v) => row.apart(|row| crease::vertex_point(c, v, tags, row, smooth)),
-        _ if kept_or_curve(c, v, tags, row) => {}
-        _ => smooth(row),
+    // What holds is found out of line, without the row, and `smooth` has one place: it is compiled into the loop, and the sum
+    // stays in registers.
+    let marked = match tags.creases {
+        Some(creases) if FULL && creases.marked(v) => Some(crease::parts(c, v, tags)),
+        _ => None,
+    };
+    if marked.is_none() && kept_or_curve(c, v, tags, row) {
+        return;
+    }
+    if marked.as_ref().is_none_or(Parts::has_smooth) {
+        smooth(row);
+    }
+    if let Some(parts) = marked {
+        parts.state(v, row);
     }
 }
 
@@ -527,12 +537,22 @@ fn edge_point<C: Connectivity, R: Row>(
     row: &mut R,
     smooth: impl Fn(&mut R),
 ) {
-    if is_boundary(c.twin(h)) {
-        row.vertex(c.origin(h), 0.5);
-        row.vertex(c.origin(c.next(h)), 0.5);
+    // One place for `smooth` here as well.
+    let sharp = if is_boundary(c.twin(h)) {
+        1.0
     } else if FULL && tags.creases.is_some_and(|creases| creases.edge(e) > 0.0) {
-        row.apart(|row| crease::edge_point(c, h, tags, row, smooth));
+        crease::edge_share(c, h, tags)
     } else {
+        0.0
+    };
+    if sharp != 1.0 {
         smooth(row);
+    }
+    if sharp != 0.0 {
+        if sharp != 1.0 {
+            row.scale(1.0 - sharp);
+        }
+        row.vertex(c.origin(h), 0.5 * sharp);
+        row.vertex(c.origin(c.next(h)), 0.5 * sharp);
     }
 }

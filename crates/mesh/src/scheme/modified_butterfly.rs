@@ -52,17 +52,17 @@ impl Scheme for ModifiedButterfly {
             let h = c.edge_half_edge(e);
             let twin = c.twin(h);
             if is_boundary(twin) {
-                return four_points(c, h, W, tags, row);
+                return row.apart(|row| four_points(c, h, W, tags, row));
             }
             let (a, b) = (Ring::of(c, h), Ring::of(c, twin));
             match (a.regular(), b.regular()) {
                 (true, true) => eight_points(c, h, W, row),
-                (false, true) => a.rule(c, 1.0, row),
-                (true, false) => b.rule(c, 1.0, row),
-                (false, false) => {
+                (false, true) => row.apart(|row| a.rule(c, 1.0, row)),
+                (true, false) => row.apart(|row| b.rule(c, 1.0, row)),
+                (false, false) => row.apart(|row| {
                     a.rule(c, 0.5, row);
                     b.rule(c, 0.5, row);
-                }
+                }),
             }
         });
         sink.pass(0, c.vertices(), |v, row| row.vertex(v, 1.0));
