@@ -22,6 +22,7 @@ mod build;
 pub mod camera;
 pub mod command;
 pub mod compare;
+mod decimal;
 pub mod document;
 mod error;
 pub mod export;

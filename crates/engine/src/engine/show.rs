@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec2, Vec3};
 use limn_document::Source;
 use limn_document::camera::{Bounds, UpAxis};
+use limn_document::export::ExportError;
 use limn_document::view::{Background, Edges, Shading, insert_name};
 use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
@@ -287,11 +288,16 @@ impl Engine {
         let Some(made) = &self.shown else { return };
         match self.document.export_packed(&made.refined, file) {
             Ok(packed) => self.post.bytes("write", &[("name", JsValue::from(file))], &packed),
-            Err(error) => self.log(
-                &format!("export {file}"),
-                sentence(&error.to_string()).replace(".obj or .glb", ".obj, .glb or .png"),
-                false,
-            ),
+            Err(error) => {
+                let why = match error {
+                    // The document knows nothing of pictures.
+                    ExportError::Format { .. } => {
+                        format!("`{file}` does not say in which format to write; end it in .obj, .glb or .png.")
+                    }
+                    _ => sentence(&error.to_string()),
+                };
+                self.log(&format!("export {file}"), why, false);
+            }
         }
     }
 
