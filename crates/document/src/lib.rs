@@ -34,6 +34,7 @@ pub mod numbers;
 mod outcome;
 pub mod parameters;
 mod pinch;
+pub mod remedy;
 pub mod source;
 mod state;
 pub mod view;

@@ -81,7 +81,7 @@ pub fn command(plan: &Plan) -> Command {
 }
 
 /// The command that lets a scheme take over, parameters and all.
-pub(crate) fn run_command(run: &Run) -> Command {
+pub fn run_command(run: &Run) -> Command {
     let SchemeWords { id, mut parameters } = words(run);
     if run.from > 0 {
         parameters.insert(0, ("from".to_owned(), run.from.to_string()));

@@ -202,6 +202,8 @@ impl Engine {
             model,
             scheme: plan.as_ref().map_or("", |p| p.scheme.info.id),
             params: controls::parameters(document),
+            runs: controls::runs(document),
+            fairings: plan.iter().flat_map(|p| p.fairings.iter().map(|f| [f.at, f.iterations])).collect(),
             level: plan.as_ref().map_or(0, |p| p.level),
             levels: report::ruler(document),
             shown,
@@ -323,6 +325,7 @@ impl Engine {
                             command: format!("export {name}"),
                             text: sentence(&error.to_string()),
                             ok: false,
+                            offer: None,
                         }),
                     }
                 });
