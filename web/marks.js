@@ -13,10 +13,10 @@ const STILL = 5;
 const SHARP = { name: "Sharpness", summary: "How many levels it stays sharp; 10 is for ever, 0 takes it away.", high: 10, default: 10 };
 /** What can be marked: command, button, what to click, and its amount. */
 const KINDS = /** @type {const} */ ([
-  ["crease", "Crease", "Click an edge of the cage.", SHARP],
-  ["corner", "Corner", "Click near a vertex of the cage.", SHARP],
-  ["hole", "Hole", "Click a face of the cage: it is refined and not shown.", null],
-  ["knot", "Knot", "Click an edge of the cage.", { name: "Interval", summary: "Small ones pull the surface to the edge; others are 1.", high: 4, default: 0.5 }],
+  ["crease", "Crease", "Click or tap an edge of the cage.", SHARP],
+  ["corner", "Corner", "Click or tap near a vertex of the cage.", SHARP],
+  ["hole", "Hole", "Click or tap a face of the cage: it is refined and not shown.", null],
+  ["knot", "Knot", "Click or tap an edge of the cage.", { name: "Interval", summary: "Small ones pull the surface to the edge; others are 1.", high: 4, default: 0.5 }],
 ]);
 
 export class Marks {

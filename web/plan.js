@@ -75,7 +75,7 @@ export class Plan {
     const at = Number(this.#at.value);
     const value = state.fairings.find(([level]) => level === at)?.[1] ?? 0;
     this.#fair.show({ scheme: `fair ${at}`, params: [{
-      key: "fair", name: "Iterations", summary: "Taubin's filter: bumps go, and the shape does not shrink. 10 is much.", kind: "whole", low: 0, high: MOST,
+      key: "fair", name: "Iterations", summary: "Taubin's filter: small bumps go first. A fine model keeps its size, a coarse cage shrinks.", kind: "whole", low: 0, high: MOST,
       default: 0, value, text: String(value), choices: [], command: "fair taubin ",
     }] });
   }
