@@ -16,8 +16,8 @@ export function say(text) {
   setText(byId("live"), text);
 }
 
-/** @param {Card} card @param {() => void} [ask] what its open button does */
-export function show(card, ask = pick) {
+/** @param {Card} card @param {() => void} [act] what its button does @param {string} [label] and says */
+export function show(card, act = pick, label = card.ask && `Open ${card.ask}`) {
   const cards = byId("cards");
   const id = `card-${card.id}`;
   document.getElementById(id)?.remove();
@@ -28,7 +28,7 @@ export function show(card, ask = pick) {
     el("h2", {}, card.title),
     ...(card.lines.length > 1 ? [el("ul", {}, ...card.lines.map((line) => el("li", {}, line)))] : card.lines.map((line) => el("p", {}, line))),
     el("div", { className: "row" },
-      ...(card.ask ? [el("button", { type: "button", className: "main", onclick: () => ask() }, `Open ${card.ask}`)] : []),
+      ...(label ? [el("button", { type: "button", className: "main", onclick: () => act() }, label)] : []),
       el("button", { type: "button", className: "dismiss", "aria-label": `Dismiss: ${card.title}`, onclick: () => {
         dismissed.add(words);
         made.remove();

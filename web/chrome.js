@@ -104,7 +104,7 @@ export class Chrome {
   /** On a phone the pills are a strip: it moves as far as shows a pill and a bit of the next one. @param {HTMLElement} pill */
   #uncover(pill) {
     const strip = this.#schemes;
-    const left = pill.offsetLeft - 64;
+    const left = pill.offsetLeft - 104;
     strip.scrollLeft = Math.min(left, Math.max(left + pill.offsetWidth + 128 - strip.clientWidth, strip.scrollLeft));
   }
 

@@ -136,7 +136,7 @@ function receive(message) {
       break;
     case "log":
       panel.log(message);
-      if (!message.ok && !panel.listening) cards.show({ id: "command", kind: "error", title: message.command, lines: [message.text], ask: "" });
+      if (!message.ok && (message.offer || !panel.listening)) refused(message);
       break;
     case "file":
       save(message);
@@ -145,6 +145,16 @@ function receive(message) {
       root.dataset["state"] = "fault";
       break;
   }
+}
+
+/** A command that did nothing: why, and a button for what would let it. @param {Extract<FromEngine, { type: "log" }>} log */
+function refused({ command, text, offer }) {
+  const card = { id: "command", kind: /** @type {const} */ ("error"), title: command, lines: [text], ask: "" };
+  const mend = () => {
+    cards.show({ ...card, title: "", lines: [] });
+    offer?.commands.forEach((line) => send(line));
+  };
+  cards.show(card, mend, offer?.label);
 }
 
 /** @param {Extract<FromEngine, { type: "file" }>} file */

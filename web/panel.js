@@ -5,7 +5,9 @@
 
 import { byId, el, full, setAttr, setText } from "./dom.js";
 import { spell } from "./keys.js";
+import { Marks } from "./marks.js";
 import { Parameters } from "./parameters.js";
+import { Plan } from "./plan.js";
 
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {import("./protocol.js").Hello} Hello */
@@ -31,7 +33,9 @@ export class Panel {
     this.send = send;
     this.resized = resized;
     this.most = most;
-    this.parameters = new Parameters((command, drag) => send(command, false, drag));
+    this.parameters = new Parameters((command, drag) => send(command, false, drag), "parameters", "Parameters");
+    this.plan = new Plan(send);
+    this.marks = new Marks(send);
     const input = el("input", {
       id: "command", name: "command", type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, enterKeyHint: "go",
       placeholder: "scheme loop", onkeydown: (/** @type {KeyboardEvent} */ event) => this.#recall(event, input),
@@ -127,6 +131,7 @@ export class Panel {
   #set(open) {
     if (this.#root.hidden !== open) return;
     this.#root.hidden = !open;
+    if (!open) this.marks.end();
     document.documentElement.classList.toggle("panelled", open);
     setAttr(byId("panel-toggle"), "aria-expanded", String(open));
     this.resized();
@@ -146,9 +151,10 @@ export class Panel {
         return el("fieldset", { id: `control-${control.id}`, className: control.kind, title: control.help },
           el("legend", {}, control.label), el("div", { className: "segments" }, ...buttons));
       });
-      byId(`pane-${tab}`).replaceChildren(...(tab === "view" ? [...rows, this.#groups] : [this.#scheme, this.parameters.root, ...rows]));
+      byId(`pane-${tab}`).replaceChildren(...(tab === "view" ? [...rows, this.#groups] : [this.#scheme, this.parameters.root, this.plan.root, this.marks.root, ...rows]));
     }
     byId("commands").replaceChildren(...hello.commands.map((c) => el("option", { value: c.name, label: `${c.args}  ${c.help}` })));
+    this.plan.learn(hello);
     this.#schemes = hello.schemes;
     this.#help(hello);
   }
@@ -166,6 +172,8 @@ export class Panel {
     }
     this.#showScheme(state);
     this.parameters.show(state);
+    this.plan.show(state);
+    this.marks.show(state);
     this.#showGroups(state);
     this.#showReport(state);
   }

@@ -11,16 +11,17 @@ import { el, setAttr, setText } from "./dom.js";
 const PLACES = 100;
 
 export class Parameters {
-  root = el("section", { id: "parameters", "aria-label": "Parameters", hidden: true });
+  root;
   /** @type {((now: Parameter) => void)[]} */ #rows = [];
   #made = "";
 
-  /** @param {(command: string, drag: boolean) => void} send */
-  constructor(send) {
+  /** @param {(command: string, drag: boolean) => void} send @param {string} id @param {string} label */
+  constructor(send, id, label) {
     this.send = send;
+    this.root = el("section", { id, className: "parameters", "aria-label": label, hidden: true });
   }
 
-  /** @param {State} state */
+  /** @param {Pick<State, "scheme" | "params">} state */
   show(state) {
     // Rows stay while their values change: one of them may be in somebody's hand.
     const made = [state.scheme, ...state.params.map(({ key }) => key)].join(" ");

@@ -58,7 +58,7 @@ export type FromEngine =
   | State
   | Progress
   | { type: "card"; card: Card }
-  | { type: "log"; command: string; text: string; ok: boolean }
+  | { type: "log"; command: string; text: string; ok: boolean; offer: Offer | null }
   | { type: "file"; name: string; mime: string; bytes: Uint8Array<ArrayBuffer> }
   | { type: "fault"; message: string; kind: "trap" | "renderer" }
   /** The first picture is on the canvas: an older canvas can go. */
@@ -152,6 +152,20 @@ export interface Pane extends Counts {
 }
 
 /** A parameter of the chosen scheme. */
+/** A scheme that takes over at a later level. */
+export interface Run {
+  from: number;
+  name: string;
+  /** Lets the scheme before it go on in its place. */
+  leave: string;
+}
+
+/** What would let a refused command work. */
+export interface Offer {
+  label: string;
+  commands: string[];
+}
+
 export interface Parameter {
   key: string;
   name: string;
@@ -183,6 +197,10 @@ export interface State {
   } | null;
   scheme: string;
   params: Parameter[];
+  /** Schemes that take over later. */
+  runs: Run[];
+  /** Levels that are faired, and by how many iterations. */
+  fairings: [number, number][];
   level: number;
   levels: Level[];
   /** What is on the screen. */

@@ -1,33 +1,20 @@
 // How a scheme works: facts and pictures from its own rules, fractions and all.
 
 import assert from "node:assert/strict";
-import { after, afterEach, before, describe, test } from "node:test";
-import { cmd, launch, ready, serveSite, visit } from "./harness.mjs";
+import { describe, test } from "node:test";
+import { RENDERERS, cmd, own, ready } from "./harness.mjs";
 
 describe("how a scheme works", () => {
-  /** @type {Awaited<ReturnType<typeof serveSite>>} */ let site;
-  /** @type {import("playwright-core").Browser} */ let browser;
-  /** @type {Awaited<ReturnType<typeof visit>>} */ let page;
-  before(async () => {
-    site = await serveSite();
-    browser = await launch();
-  });
-  after(async () => {
-    await browser?.close();
-    site?.close();
-  });
-  afterEach(async () => {
-    assert.deepEqual(page.errors, []);
-    await page.context().close();
-  });
+  const here = own();
+  /** @type {Awaited<ReturnType<typeof here.visit>>} */ let page;
   /** The weights in the nth picture with this caption, as they are written there. @param {string} caption @param {number} [nth] */
   const weights = async (caption, nth = 0) => {
     const figure = page.locator("#about-scheme figure").filter({ has: page.getByText(caption, { exact: true }) }).nth(nth);
     return (await figure.locator("text").allTextContents()).sort().join(" ");
   };
 
-  test("Loop and Catmull–Clark draw the fractions that their papers print", async () => {
-    page = await visit(browser, site.url, { renderer: "webgpu", width: 1200, height: 760, hash: "#1;open+builtin:pawn;scheme+loop;level+1" });
+  for (const renderer of RENDERERS) test(`Loop and Catmull–Clark draw the fractions that their papers print, on ${renderer}`, async () => {
+    page = await here.visit({ renderer, width: 1200, height: 760, hash: "#1;open+builtin:pawn;scheme+loop;level+1" });
     const sheet = page.locator("#about-scheme");
     await page.locator("#about").click();
     await sheet.locator("h1").filter({ hasText: "Loop" }).waitFor();
@@ -59,7 +46,7 @@ describe("how a scheme works", () => {
   });
 
   test("dual schemes show their faces, and the panel leads here", async () => {
-    page = await visit(browser, site.url, { renderer: "webgpu", width: 390, height: 844, touch: true, hash: "#1;open+builtin:cube;scheme+doo-sabin;level+1" });
+    page = await here.visit({ renderer: "webgpu", width: 390, height: 844, touch: true, hash: "#1;open+builtin:cube;scheme+doo-sabin;level+1" });
     await page.locator("#panel-toggle").click();
     await page.locator("#tab-surface").click();
     await page.locator("#scheme").filter({ hasText: "Cuts the corners" }).waitFor();
@@ -77,7 +64,7 @@ describe("how a scheme works", () => {
   });
 
   test("every scheme of the registry has its line and its pictures", async () => {
-    page = await visit(browser, site.url, { renderer: "webgpu", width: 1200, height: 760, hash: "#1;open+builtin:pawn;scheme+loop;level+0" });
+    page = await here.visit({ renderer: "webgpu", width: 1200, height: 760, hash: "#1;open+builtin:pawn;scheme+loop;level+0" });
     await page.locator("#about").click();
     const pills = await page.$$eval("#schemes button", (pills) => pills.map((pill) => ({ id: pill.id.slice(7), name: pill.textContent, title: pill.title })));
     for (const { id, name, title } of pills) {

@@ -4,11 +4,13 @@
 // The variables LIMN_SITE (the built page, default dist/), CHROME and LIMN_CLI (the native command line) come from
 // `cargo xtask test`; with defaults for them a single file runs under `node --test` as well.
 
+import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { existsSync } from "node:fs";
 import { mkdir, mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { delimiter, extname, join, normalize, sep } from "node:path";
+import { after, afterEach, before } from "node:test";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants } from "node:zlib";
 import { chromium } from "playwright-core";
@@ -138,6 +140,45 @@ export function launch() {
       "--disable-sync",
     ],
   });
+}
+
+/**
+ * What most files need: a served page and a browser for all tests of a `describe`, and pages that each test has for itself.
+ * After each test no page may have met an error, and all are closed; files made with `scratch` go at the end.
+ * @param {Parameters<typeof serveSite>[0]} [options]
+ */
+export function own(options) {
+  /** @type {Awaited<ReturnType<typeof serveSite>>} */ let site;
+  /** @type {import("playwright-core").Browser} */ let browser;
+  /** @type {Awaited<ReturnType<typeof visit>>[]} */ let open = [];
+  before(async () => {
+    site = await serveSite(options);
+    browser = await launch();
+  });
+  after(async () => {
+    await browser?.close();
+    site?.close();
+    await tidy();
+  });
+  afterEach(async () => {
+    const pages = open.splice(0);
+    await Promise.all(pages.map((page) => page.context().close()));
+    assert.deepEqual(pages.flatMap(({ errors }) => errors), []);
+  });
+  return {
+    get site() {
+      return site;
+    },
+    get browser() {
+      return browser;
+    },
+    /** @param {Parameters<typeof visit>[2]} [options] */
+    visit: async (options) => {
+      const page = await visit(browser, site.url, options);
+      open.push(page);
+      return page;
+    },
+  };
 }
 
 /**

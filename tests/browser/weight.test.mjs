@@ -6,8 +6,6 @@ import { describe, test } from "node:test";
 import { QUICK, RENDERERS, launch, picture, serveSite, visit } from "./harness.mjs";
 
 const BUDGET = { webgpu: 230_000, webgl: 800_000 };
-/** What is over the budget for now, and may not grow: ARCHITECTURE.md says where it is to be saved. */
-const OVER = { webgpu: 13_000, webgl: 0 };
 
 describe("the page's weight", { skip: QUICK && "a quick build is not what ships" }, () => {
   for (const renderer of RENDERERS) {
@@ -25,7 +23,7 @@ describe("the page's weight", { skip: QUICK && "a quick build is not what ships"
         assert.equal(new Set(paths).size, paths.length, "nothing is fetched twice");
         assert.deepEqual(site.sent.filter(({ status }) => status !== 200), [], "nothing is missing");
         assert.deepEqual(paths.filter((path) => /^\/pkg\/(files|kernel)\//.test(path)), [], "file formats and rare schemes come later");
-        assert.ok(total <= BUDGET[renderer] + OVER[renderer], `a first visit transfers ${total} bytes, ${BUDGET[renderer]} are allowed`);
+        assert.ok(total <= BUDGET[renderer], `a first visit transfers ${total} bytes, ${BUDGET[renderer]} are allowed`);
       } finally {
         await browser.close();
         site.close();

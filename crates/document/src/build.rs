@@ -18,6 +18,7 @@ use limn_mesh::{Mesh, Note, Soup, TopologyError, Weld, triangulate_soup};
 
 use crate::camera::Bounds;
 use crate::command::CreaseWhere;
+use crate::numbers::text_single;
 
 /// A change of the model, in the order in which it was made.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +86,7 @@ pub enum BuildError {
     #[error("{0}")]
     Topology(#[from] TopologyError),
     /// Coordinates would leave the range of 32-bit floats.
-    #[error("scale {0} would take coordinates out of range; choose a factor nearer to 1")]
+    #[error("scale {} would take coordinates out of range; choose a factor nearer to 1", text_single(*.0))]
     Scale(f32),
     /// All points are in one place.
     #[error("the model has no extent to scale to 1; give a factor, as in `scale 2`")]

@@ -321,7 +321,7 @@ impl Camera {
             return;
         }
         let size = bounds.size();
-        let distance = (self.distance * factor).clamp(size * 1e-3, size * 100.0);
+        let distance = (self.distance * factor).max(size * 1e-3).min(size * 100.0);
         // The factor that remains after the clamp, so that running into the stop does not drift sideways.
         let factor = distance / self.distance;
         let anchor = self.on_target_plane(pointer, aspect);

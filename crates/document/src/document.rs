@@ -60,6 +60,12 @@ impl Document {
         Document { state: None, history: History::default(), view: View::default(), pending: None, budget, aspect: 1.0 }
     }
 
+    /// Another document with the same model and settings, to try commands on; none without a model. Models are shared.
+    pub(crate) fn trial(&self) -> Option<Document> {
+        let state = Some(self.state.clone()?);
+        Some(Document { state, aspect: self.aspect, ..Document::new(self.budget) })
+    }
+
     /// How many bytes a refined level may take.
     pub fn budget(&self) -> u64 {
         self.budget
@@ -404,6 +410,11 @@ impl Document {
     /// The mesh that is refined, if a model is open: triangulated if the scheme needs that.
     pub fn mesh(&self) -> Option<&Arc<Mesh>> {
         self.state.as_ref().map(|s| &s.built.mesh)
+    }
+
+    /// The model's own polygons, whatever the scheme makes of them first: marks are of them.
+    pub fn polygons(&self) -> Option<&Arc<Mesh>> {
+        self.state.as_ref().map(|s| &s.base.polygons.mesh)
     }
 
     /// The polygons that the mesh was built from; `mesh().face_source` counts its faces. Groups and materials are there.

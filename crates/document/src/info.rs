@@ -22,6 +22,7 @@ use limn_mesh::{Counts, Family, Honours, Stats, refine::grouped};
 use crate::build::Remark;
 use crate::camera::Bounds;
 use crate::document::Document;
+use crate::numbers::text_single;
 
 /// Facts about the present level. See the module's text.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,9 +128,8 @@ impl Info {
             Some(genus) => _ = write!(out, "{genus},\"orientable\":true"),
             None => out.push_str("null,\"orientable\":false"),
         }
-        let [ax, ay, az] = self.bounds.min.to_array();
-        let [bx, by, bz] = self.bounds.max.to_array();
-        let _ = write!(out, ",\"bounds\":{{\"min\":[{ax},{ay},{az}],\"max\":[{bx},{by},{bz}]}}");
+        let [min, max] = self.corners(",");
+        let _ = write!(out, ",\"bounds\":{{\"min\":[{min}],\"max\":[{max}]}}");
         let _ = write!(out, ",\"bytes\":{},\"warnings\":[", self.bytes);
         for (i, warning) in self.warnings.iter().enumerate() {
             if i > 0 {
@@ -141,12 +141,17 @@ impl Info {
         out
     }
 
+    /// The box's two corners, their coordinates joined.
+    fn corners(&self, between: &str) -> [String; 2] {
+        [self.bounds.min, self.bounds.max].map(|corner| corner.to_array().map(text_single).join(between))
+    }
+
     /// The same for people, a line a fact, without the warnings.
     pub fn text(&self) -> String {
         let Counts { vertices, edges, faces, .. } = self.counts;
         let Stats { boundary_loops, components, genus, .. } = self.stats;
         let genus = genus.map_or_else(|| "none (the surface has one side only)".to_owned(), |g| g.to_string());
-        let Bounds { min, max, .. } = self.bounds;
+        let [min, max] = self.corners(" ");
         format!(
             "model           {} ({})\n\
              scheme          {}, level {}{}\n\
@@ -156,7 +161,7 @@ impl Info {
              boundary loops  {boundary_loops}\n\
              components      {components}\n\
              genus           {genus}\n\
-             bounds          {} {} {} to {} {} {}\n\
+             bounds          {min} to {max}\n\
              memory          {} bytes\n",
             self.name,
             self.source,
@@ -166,12 +171,6 @@ impl Info {
             grouped(vertices),
             grouped(edges),
             grouped(faces),
-            min.x,
-            min.y,
-            min.z,
-            max.x,
-            max.y,
-            max.z,
             grouped(self.bytes),
         )
     }

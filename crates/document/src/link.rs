@@ -74,7 +74,11 @@ pub fn write<S: AsRef<str>>(commands: impl IntoIterator<Item = S>) -> String {
         for c in command.as_ref().chars() {
             match c {
                 ' ' => link.push('+'),
-                c if c.is_ascii_alphanumeric() || "-._~:/,=@?".contains(c) => link.push(c),
+                c if c.is_ascii_alphanumeric()
+                    || matches!(c, '-' | '.' | '_' | '~' | ':' | '/' | ',' | '=' | '@' | '?') =>
+                {
+                    link.push(c)
+                }
                 c => escape(c, &mut link),
             }
         }
@@ -82,7 +86,7 @@ pub fn write<S: AsRef<str>>(commands: impl IntoIterator<Item = S>) -> String {
     // A program that finds addresses in text takes a sign at their end for the sentence's.
     if let Some(last) = link.pop() {
         match last {
-            c if ".,:?~-_".contains(c) => escape(c, &mut link),
+            '.' | ',' | ':' | '?' | '~' | '-' | '_' => escape(last, &mut link),
             c => link.push(c),
         }
     }
@@ -102,7 +106,7 @@ pub fn read(fragment: &str) -> Result<Vec<Command>, LinkError> {
     let digits = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let (version, rest) = text.split_at_checked(digits).unwrap_or(("", text));
     // A version is digits and a semicolon, so an escaped semicolon there means that all of it was escaped.
-    if rest.get(..3).is_some_and(|s| s.eq_ignore_ascii_case("%3b")) && !rest.contains(';') {
+    if rest.get(..3).is_some_and(|s| s.eq_ignore_ascii_case("%3b")) && !rest.contains([';']) {
         let once = unescape(text, false).ok_or_else(|| LinkError::Escape { part: 1, text: shorten(rest) })?;
         return read(&once);
     }

@@ -3,12 +3,32 @@
 //! One way in and one way out, so that the page holds one copy of each and both platforms agree on every bit. Reading is
 //! exact (the f64 nearest to the decimal). Writing rounds to decimal places and then takes the fewest digits that read back.
 //!
-//! The standard library's reader carries a table of ten kilobytes, for speed that a command line never needs; the compact
-//! one of `lexical` computes what it looks up.
+//! No number is written by the standard library: see [`crate::decimal`] for what that saves.
+
+use crate::decimal::{self, DOUBLE, SINGLE};
 
 /// A finite number: `3`, `-0.5`, `1e-3`.
 pub fn number(text: &str) -> Option<f64> {
-    lexical_parse_float::FromLexical::from_lexical(text.as_bytes()).ok().filter(|v: &f64| v.is_finite())
+    decimal::read(text)
+}
+
+/// A number in the fewest digits that read back as it; zero without a sign.
+pub fn text(value: f64) -> String {
+    written(value, || decimal::write(value.abs().to_bits(), DOUBLE))
+}
+
+/// A single-precision number in the fewest digits that read back as it; zero without a sign.
+pub fn text_single(value: f32) -> String {
+    written(value.into(), || decimal::write(value.abs().to_bits().into(), SINGLE))
+}
+
+fn written(value: f64, size: impl Fn() -> String) -> String {
+    let size = match value {
+        _ if value.is_nan() => return "NaN".to_owned(),
+        _ if value.is_infinite() => "inf".to_owned(),
+        _ => size(),
+    };
+    if value < 0.0 { format!("-{size}") } else { size }
 }
 
 /// A finite single-precision number.
@@ -28,14 +48,13 @@ pub fn decade(value: f64) -> i32 {
 pub fn decimal(value: f64, places: i32) -> String {
     let scale = ten(places.abs());
     let rounded = if places >= 0 { (value * scale).round() / scale } else { (value / scale).round() * scale };
-    // Adding zero turns -0 into 0.
-    (rounded + 0.0).to_string()
+    text(rounded)
 }
 
 /// `value` with so many digits that count: "0.9531", "1412", "2.1e-7".
 pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
-        return value.to_string();
+        return text(value);
     }
     let places = digits - 1 - decade(value.abs());
     let text = decimal(value, places);
@@ -71,6 +90,33 @@ mod tests {
     }
 
     #[test]
+    fn halves_and_ends() {
+        // Between two floats, exactly or by the last of many digits.
+        for (text, value) in [
+            ("9007199254740993", 9_007_199_254_740_992.0),
+            ("9007199254740993.0000000000000000000000000000000001", 9_007_199_254_740_994.0),
+            ("9007199254740995", 9_007_199_254_740_996.0),
+            ("2.4703282292062327208e-324", 0.0),
+            ("2.4703282292062328e-324", 5e-324),
+            ("1.7976931348623158e308", f64::MAX),
+        ] {
+            assert_eq!(number(text), Some(value), "{text}");
+        }
+        let half = format!("{}5{}1", "0.", "0".repeat(900));
+        assert_eq!(number(&half), Some(0.5));
+        let tie = format!("9007199254740993.{}1", "0".repeat(900));
+        assert_eq!(number(&tie), Some(9_007_199_254_740_994.0), "what is left out still counts");
+        assert_eq!(number("1.7976931348623159e308"), None);
+        for value in [5e-324, f64::MIN_POSITIVE, f64::MAX, 2.0_f64.powi(-44), 9_007_199_254_740_992.0, 1e23, 0.1] {
+            assert_eq!(text(value), value.to_string());
+        }
+        for value in [1e-45_f32, f32::MIN_POSITIVE, f32::MAX, 16_777_216.0, 0.3, 8.5e-8] {
+            assert_eq!(text_single(-value), (-value).to_string());
+        }
+        assert_eq!((text(-0.0), text_single(0.0)), ("0".into(), "0".into()));
+    }
+
+    #[test]
     fn decades_and_places() {
         assert_eq!([0.01_f32, 0.99, 1.0, 999.9, 1e30].map(|v| decade(v.into())), [-2, -1, 0, 2, 30]);
         assert_eq!([decade(0.0), decade(1e-40), decade(1e40)], [-45, -40, 38]);
@@ -92,6 +138,32 @@ mod tests {
             prop_assert_eq!(number(&value.to_string()), Some(value));
             let short = format!("{value:.places$e}");
             prop_assert_eq!(number(&short), short.parse().ok().filter(|v: &f64| v.is_finite()));
+        }
+
+        /// And its writer.
+        #[test]
+        fn writing_agrees_with_the_standard_library(bits in any::<u64>(), power in any::<bool>()) {
+            // Powers of two have a nearer neighbour below than above.
+            let bits = if power { bits & !((1 << 52) - 1) } else { bits };
+            let value = f64::from_bits(bits);
+            prop_assume!(value.is_finite() && value != 0.0);
+            prop_assert_eq!(text(value), value.to_string());
+            let bits = (bits >> 32) as u32;
+            let value = f32::from_bits(if power { bits & !((1 << 23) - 1) } else { bits });
+            prop_assume!(value.is_finite() && value != 0.0);
+            prop_assert_eq!(text_single(value), value.to_string());
+        }
+
+        #[test]
+        fn numbers_of_few_digits_are_written_so(mantissa in -99_999_i32..99_999, exponent in 0..8_i32) {
+            let value = f64::from(mantissa) / ten(exponent);
+            prop_assert_eq!(text(value), (value + 0.0).to_string());
+            prop_assert_eq!(text_single(value as f32), (value as f32 + 0.0).to_string());
+        }
+
+        #[test]
+        fn long_and_broken_texts_are_read_like_there(text in "[-+]?[0-9]{0,30}[.]?[0-9]{0,40}([eE][-+]?[0-9]{0,4})?") {
+            prop_assert_eq!(number(&text), text.parse().ok().filter(|v: &f64| v.is_finite()), "{}", text);
         }
     }
 }

@@ -8,7 +8,7 @@ use limn_mesh::{Domain, Fairing, Info, Param, Params, Plan, Run};
 
 use crate::command::{Command, SchemeWords};
 use crate::error::CommandError;
-use crate::numbers::number;
+use crate::numbers::{self, number};
 use crate::state::find_scheme;
 
 /// Reads words against the scheme's list. A key that comes twice counts the last time.
@@ -81,7 +81,7 @@ pub fn command(plan: &Plan) -> Command {
 }
 
 /// The command that lets a scheme take over, parameters and all.
-pub(crate) fn run_command(run: &Run) -> Command {
+pub fn run_command(run: &Run) -> Command {
     let SchemeWords { id, mut parameters } = words(run);
     if run.from > 0 {
         parameters.insert(0, ("from".to_owned(), run.from.to_string()));
@@ -107,7 +107,7 @@ pub fn prefix(plan: &Plan, at: usize) -> String {
 /// A value as a word.
 pub fn text(param: &Param, value: f64) -> String {
     match &param.domain {
-        Domain::Number { .. } | Domain::Whole { .. } => value.to_string(),
+        Domain::Number { .. } | Domain::Whole { .. } => numbers::text(value),
         Domain::Choice(words) => words.get(value as usize).copied().unwrap_or_default().to_owned(),
     }
 }
@@ -115,7 +115,9 @@ pub fn text(param: &Param, value: f64) -> String {
 /// What a parameter can be, for messages: "a number from 0 to 0.125", "loop or warren".
 pub fn expected(param: &Param) -> String {
     match &param.domain {
-        Domain::Number { low, high, .. } => format!("a number from {low} to {high}"),
+        Domain::Number { low, high, .. } => {
+            format!("a number from {} to {}", numbers::text(*low), numbers::text(*high))
+        }
         Domain::Whole { low, high, .. } => format!("a whole number from {low} to {high}"),
         Domain::Choice(words) => words.join(" or "),
     }

@@ -10,7 +10,7 @@
 use std::fmt;
 
 use crate::camera::{Bounds, Camera, DEFAULT_FOV, FOV_RANGE, Projection, Standard, UpAxis, wrap_degrees};
-use crate::numbers::single;
+use crate::numbers::{single, text_single};
 
 /// How light falls on the faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -287,11 +287,11 @@ impl ViewSet {
             ViewSet::Up(UpAxis::Z) => "z".into(),
             ViewSet::Projection(Projection::Perspective) => "perspective".into(),
             ViewSet::Projection(Projection::Orthographic) => "orthographic".into(),
-            ViewSet::Fov(fov) => fov.to_string(),
+            ViewSet::Fov(fov) => text_single(*fov),
             ViewSet::Camera(CameraSet::Standard(standard)) => standard.name().into(),
             ViewSet::Camera(CameraSet::Fit) => "fit".into(),
             ViewSet::Camera(CameraSet::Pose { yaw, pitch, distance, target: [x, y, z] }) => {
-                format!("{yaw},{pitch},{distance},{x},{y},{z}")
+                [yaw, pitch, distance, x, y, z].map(|v| text_single(*v)).join(",")
             }
         }
     }

@@ -95,7 +95,7 @@ pub(crate) fn shorten(text: &str) -> String {
 /// A message as a sentence: with a full stop, and with a capital unless it begins with a name (`cut.glb`, `accessors[0]`).
 pub fn sentence(text: &str) -> String {
     let first = text.split_whitespace().next().unwrap_or_default();
-    let is_name = first.contains('[') || first.trim_end_matches(['.', ':', ',']).contains('.');
+    let is_name = first.contains(['[']) || first.trim_end_matches(['.', ':', ',']).contains(['.']);
     let mut chars = text.chars();
     let mut out: String = match chars.next() {
         Some(c) if !is_name => std::iter::once(c.to_ascii_uppercase()).chain(chars).collect(),

@@ -60,7 +60,7 @@ pub fn compare(
 }
 
 /// A scheme's name, with what was set of it: "Loop, weights warren".
-fn name(run: &Run) -> String {
+pub fn name(run: &Run) -> String {
     let mut name = run.scheme.info.name.to_owned();
     for (key, value) in parameters::words(run).parameters {
         name.push_str(&format!(", {key} {value}"));

@@ -7,7 +7,8 @@ use limn_mesh::marks::INFINITE;
 use limn_mesh::{Boundary, Domain, Family, LimitRule, Weld};
 use serde::{Serialize, Serializer};
 
-use crate::protocol::{Parameter, ParameterChoice};
+use crate::compare::name;
+use crate::protocol::{Parameter, ParameterChoice, Run};
 
 /// A row.
 #[derive(Debug, Serialize)]
@@ -327,6 +328,16 @@ pub fn parameters(document: &Document) -> Vec<Parameter> {
     info.params.iter().enumerate().map(row).collect()
 }
 
+/// The schemes that take over after the first.
+pub fn runs(document: &Document) -> Vec<Run> {
+    let Some(plan) = document.plan() else { return Vec::new() };
+    let row = |run: &limn_mesh::Run| {
+        let before = limn_mesh::Run { from: run.from, ..plan.run(run.from.saturating_sub(1)) };
+        Run { from: run.from, name: name(run), leave: parameters::run_command(&before).to_string() }
+    };
+    plan.later.iter().map(row).collect()
+}
+
 /// The rows that make no difference to this model. `open` says whether it has a rim.
 pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     let mut rows = Vec::new();
@@ -421,6 +432,27 @@ mod tests {
                 document.run(&format!("{}{word}", row.command)).unwrap();
             }
         }
+    }
+
+    #[test]
+    fn later_schemes_can_be_left_out() {
+        let mut document = Document::new(1 << 30);
+        assert_eq!(runs(&document), []);
+        document.run("open builtin:pawn").unwrap();
+        document.run("scheme loop weights=warren").unwrap();
+        document.run("scheme butterfly from=1 w=0.05").unwrap();
+        document.run("scheme catmull-clark from=3").unwrap();
+        let rows = runs(&document);
+        assert_eq!(
+            rows.iter().map(|r| (r.from, &*r.name)).collect::<Vec<_>>(),
+            [(1, "Butterfly, w 0.05"), (3, "Catmull–Clark")]
+        );
+        assert_eq!(rows[1].leave, "scheme butterfly from=3 w=0.05");
+        document.run(&rows[1].leave).unwrap();
+        assert_eq!(runs(&document), rows[..1]);
+        document.run(&rows[0].leave).unwrap();
+        assert_eq!(runs(&document), []);
+        assert!(document.text().contains("scheme loop weights=warren"));
     }
 
     #[test]

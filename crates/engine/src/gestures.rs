@@ -106,6 +106,13 @@ impl Viewport {
     }
 }
 
+/// The viewport that a place on the canvas belongs to: words under a picture are its own.
+pub fn pane(views: &[Viewport], at: Vec2) -> usize {
+    let far = |v: &Viewport| (at - at.clamp(v.min, v.max)).length_squared();
+    let near = views.iter().enumerate().min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+    near.map_or(0, |n| n.0)
+}
+
 /// What a batch came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effect {
@@ -147,19 +154,13 @@ impl Gestures {
     /// Applies a batch to the camera that all `views` share. What begins in one of them goes on there.
     pub fn apply(&mut self, batch: &[f32], views: &[Viewport], camera: &mut Camera, bounds: &Bounds) -> Effect {
         let mut effect = Effect::default();
-        // The words under a picture belong to it.
-        let pane = |at: Vec2| {
-            let far = |v: &Viewport| (at - at.clamp(v.min, v.max)).length_squared();
-            let near = views.iter().enumerate().min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
-            near.map_or(0, |n| n.0)
-        };
         for &[kind, pointer, x, y, a, b, modifiers, time] in batch.as_chunks::<STRIDE>().0 {
             let (id, at, modifiers) = (pointer as i32, Vec2::new(x, y), modifiers as u32);
             if !at.is_finite() {
                 continue;
             }
             if self.down.is_empty() && matches!(kind as i32, 0 | 4) {
-                self.pane = pane(at);
+                self.pane = pane(views, at);
             }
             let Some(view) = views.get(self.pane).or(views.first()) else { return effect };
             match kind as i32 {

@@ -255,6 +255,26 @@ pub struct ParameterChoice {
     pub command: String,
 }
 
+/// A scheme that takes over at a later level.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// The level that it begins with.
+    pub from: u32,
+    /// Its name, and what was set of it.
+    pub name: String,
+    /// What lets the scheme before it go on in its place.
+    pub leave: String,
+}
+
+/// What would let a refused command work.
+#[derive(Serialize)]
+pub struct Offer {
+    /// On the button.
+    pub label: String,
+    /// What it sends, one after the other.
+    pub commands: Vec<String>,
+}
+
 /// A way to save.
 #[derive(Serialize)]
 pub struct ExportChoice {
@@ -276,6 +296,10 @@ pub struct State {
     pub scheme: &'static str,
     /// Its parameters.
     pub params: Vec<Parameter>,
+    /// Schemes that take over later.
+    pub runs: Vec<Run>,
+    /// Levels that are faired, and by how many iterations.
+    pub fairings: Vec<[u32; 2]>,
     /// The chosen level.
     pub level: u32,
     /// The ruler.
@@ -353,6 +377,8 @@ pub enum Message {
         text: String,
         /// Whether it worked.
         ok: bool,
+        /// What would let it.
+        offer: Option<Offer>,
     },
     /// The engine can do no more.
     Fault {

@@ -21,10 +21,35 @@ pub fn float_key(x: f64) -> u64 {
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
-/// Sorts rows of (key, number), upwards.
+/// Sorts rows of (key, number), upwards. By a heap (J. Williams 1964): a third the speed of [`sort_keys`], and a twentieth
+/// the machine code of a second sort of that kind.
 #[inline(never)]
 pub fn sort(rows: &mut [(u64, u32)]) {
-    rows.sort_unstable();
+    let count = rows.len();
+    // Rows up to count / 2 sink into a heap, the largest first; then the first goes to the end, again and again.
+    for round in (0..count + count / 2).rev() {
+        let (mut at, end) = match round.checked_sub(count) {
+            Some(at) => (at, count),
+            None => {
+                rows.swap(0, round);
+                (0, round)
+            }
+        };
+        loop {
+            let mut child = 2 * at + 1;
+            if child >= end {
+                break;
+            }
+            if child + 1 < end && rows[child] < rows[child + 1] {
+                child += 1;
+            }
+            if rows[at] >= rows[child] {
+                break;
+            }
+            rows.swap(at, child);
+            at = child;
+        }
+    }
 }
 
 /// Sorts keys, upwards.
@@ -39,6 +64,14 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn rows_are_sorted(mut rows in prop::collection::vec((0..9_u64, 0..9_u32), 0..40)) {
+            let mut sorted = rows.clone();
+            sorted.sort();
+            sort(&mut rows);
+            prop_assert_eq!(rows, sorted);
+        }
+
         #[test]
         fn keys_order_as_what_they_are_made_of(a in any::<(u32, u32)>(), b in any::<(u32, u32)>(), x in any::<u64>(), y in any::<u64>()) {
             prop_assert_eq!(key(a.0, a.1).cmp(&key(b.0, b.1)), a.cmp(&b));

@@ -4,10 +4,9 @@
 //! are printed raw and as brotli at its highest level, which is what good hosts send.
 
 use crate::arguments::Arguments;
-use crate::paths;
-use crate::process::say;
-use crate::shorten::strip;
+use crate::process::{self, say};
 use crate::wasm::{self, Module, Profile};
+use crate::{paths, toolchain};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -40,19 +39,29 @@ pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
         if !from.to_string_lossy().ends_with(".d.ts") {
             copy(&from, &fresh.join(name))?;
         }
-        let to = fresh.join(name);
-        let text = to.extension().is_some_and(|extension| extension == "js" || extension == "css");
-        if profile == Profile::Dist && text {
-            fs::write(&to, strip(&fs::read_to_string(&to)?))?;
-        }
     }
     for module in Module::ALL {
         for name in module.files() {
             copy(&module.package(profile).join(&name), &fresh.join("pkg").join(module.id()).join(name))?;
         }
     }
+    if profile == Profile::Dist {
+        minify(&fresh)?;
+    }
     remove(dist)?;
     fs::rename(&fresh, dist).with_context(|| format!("could not fill {}", paths::shown(dist)))
+}
+
+/// Takes comments, indentation and long names out of every script and style sheet below a folder, file by file: modules stay
+/// the modules that the page imports.
+fn minify(site: &Path) -> Result<()> {
+    toolchain::ensure_packages()?;
+    let name = if cfg!(windows) { "esbuild.cmd" } else { "esbuild" };
+    let mut esbuild = process::program(paths::root().join("node_modules/.bin").join(name));
+    esbuild.args(["--minify", "--charset=utf8", "--log-level=warning", "--allow-overwrite"]);
+    esbuild.arg(format!("--outdir={0}", site.display())).arg(format!("--outbase={0}", site.display()));
+    let text = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "js" || extension == "css");
+    process::run(esbuild.args(files(site)?.into_iter().filter(text)))
 }
 
 fn remove(folder: &Path) -> Result<()> {

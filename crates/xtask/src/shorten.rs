@@ -61,9 +61,8 @@ fn short(number: usize) -> String {
 fn words(glue: &str, names: &[String]) -> String {
     let short: std::collections::BTreeMap<_, _> =
         names.iter().enumerate().map(|(number, name)| (name.as_str(), short(number))).collect();
-    let glue = strip(glue);
     let mut out = String::with_capacity(glue.len());
-    let mut rest = glue.as_str();
+    let mut rest = glue;
     let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '$';
     while let Some(begin) = rest.find(is_word) {
         let length = rest[begin..].find(|c| !is_word(c)).unwrap_or(rest.len() - begin);
@@ -73,38 +72,6 @@ fn words(glue: &str, names: &[String]) -> String {
         rest = &rest[begin + length..];
     }
     out + rest
-}
-
-/// A script or a style sheet without indentation, empty lines and comments that begin a line.
-///
-/// It looks at the beginnings of lines only, where neither strings nor patterns can hide. A text with a string over
-/// several lines comes back as it is.
-pub fn strip(text: &str) -> String {
-    if text.lines().any(|line| line.matches('`').count() % 2 == 1) {
-        return text.to_owned();
-    }
-    let mut out = String::with_capacity(text.len());
-    let mut comment = false;
-    for line in text.lines() {
-        let mut line = line.trim();
-        loop {
-            if comment {
-                let Some(end) = line.find("*/") else { break };
-                line = line[end + 2..].trim_start();
-                comment = false;
-            } else if let Some(rest) = line.strip_prefix("/*") {
-                line = rest;
-                comment = true;
-            } else {
-                break;
-            }
-        }
-        if !comment && !line.is_empty() && !line.starts_with("//") {
-            out.push_str(line);
-            out.push('\n');
-        }
-    }
-    out
 }
 
 fn text(bytes: &[u8], at: usize) -> Result<(&str, usize)> {
@@ -151,18 +118,10 @@ mod tests {
         wasm.extend_from_slice(&[2, section.len() as u8]);
         wasm.extend_from_slice(&section);
         wasm.extend_from_slice(&[0, 3, 1, b'x', 7]);
-        let glue = "/**\n * Draws.\n */\n    const a = {\n        __wbg_draw_0123: f, // soon\n        __wbg_draw_01234: g,\n    };\n";
+        let glue = "const a = { __wbg_draw_0123: f, __wbg_draw_01234: g };";
         let (module, glue) = shorten(&wasm, glue).unwrap();
         assert_eq!(module[8..], *b"\x02\x0d\x01\x06./m.js\x02i0\0\0\0\x03\x01x\x07");
-        assert_eq!(glue, "const a = {\ni0: f, // soon\n__wbg_draw_01234: g,\n};\n");
-    }
-
-    #[test]
-    fn comments_go_and_code_stays() {
-        let text = "// a\n/** b\n * c */ d();\n  /** @type {e} */ #f = [];\n\n  g(); // h\n  /* i */ /* j */\n  k = 'l // m';\n";
-        assert_eq!(strip(text), "d();\n#f = [];\ng(); // h\nk = 'l // m';\n");
-        let template = "a = `\n  // b\n`;\n";
-        assert_eq!(strip(template), template);
+        assert_eq!(glue, "const a = { i0: f, __wbg_draw_01234: g };");
     }
 
     #[test]

@@ -19,6 +19,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 use wasm_bindgen_cli_support::Bindgen;
 
+/// What is compiled for speed where files are read; the engine only unpacks what that sends.
+const READS_FAST: &str = "profile.dist.package.limn-formats.opt-level=3";
+
 /// One of the wasm modules.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Module {
@@ -140,6 +143,9 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
         command.args(["--no-default-features", "--features", module.id()]);
     }
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
+    if module == Module::Files {
+        command.args(["--config", READS_FAST]);
+    }
     command.env("RUSTFLAGS", toolchain::wasm_flags());
     if !process::succeeds(&mut command)? {
         // The compiler has just told the terminal; the second run, of the failing crate alone, is for the page.

@@ -29,6 +29,7 @@ pub use parse::{ParseError, parse_all, parse_script, parse_words};
 pub use rows::COMMANDS;
 pub use table::{Arg, Class, Keys, Kind, Parsed, Spec, Value, spec};
 
+use crate::numbers::text_single;
 use crate::source::Source;
 use crate::view::ViewSet;
 use crate::words::quote;
@@ -200,9 +201,9 @@ impl fmt::Display for Command {
             Command::Open(source) => write!(f, " {}", quote(&source.to_string())),
             Command::Weld(Weld::Exact) => f.write_str(" exact"),
             Command::Weld(Weld::Off) => f.write_str(" off"),
-            Command::Weld(Weld::Relative(fraction)) => write!(f, " {fraction}"),
+            Command::Weld(Weld::Relative(fraction)) => write!(f, " {}", text_single(*fraction)),
             Command::Quads(on) | Command::Limit(on) => f.write_str(if *on { " on" } else { " off" }),
-            Command::Scale(Some(s)) => write!(f, " {s}"),
+            Command::Scale(Some(s)) => write!(f, " {}", text_single(*s)),
             Command::Scheme { id, parameters } => write_words(f, id, parameters),
             Command::Compare(panes) if panes.is_empty() => f.write_str(" off"),
             Command::Compare(panes) => panes.iter().try_for_each(|words| write_words(f, &words.id, &words.parameters)),
@@ -213,15 +214,15 @@ impl fmt::Display for Command {
                         let words: Vec<String> = vertices.iter().map(u32::to_string).collect();
                         write!(f, " {}", words.join("-"))?;
                     }
-                    CreaseWhere::Angle(degrees) => write!(f, " angle {degrees}")?,
+                    CreaseWhere::Angle(degrees) => write!(f, " angle {}", text_single(*degrees))?,
                     CreaseWhere::Everywhere => return f.write_str(" none"),
                 }
-                write!(f, " {sharpness}")
+                write!(f, " {}", text_single(*sharpness))
             }
-            Command::Corner { vertex, sharpness } => write!(f, " {vertex} {sharpness}"),
+            Command::Corner { vertex, sharpness } => write!(f, " {vertex} {}", text_single(*sharpness)),
             Command::Hole(face) => write!(f, " {face}"),
             Command::Knot { ends: [a, b], both, interval } => {
-                write!(f, " {a}{}{b} {interval}", if *both { '=' } else { '-' })
+                write!(f, " {a}{}{b} {}", if *both { '=' } else { '-' }, text_single(*interval))
             }
             Command::CreaseDecay(Decay::Uniform) => f.write_str(" uniform"),
             Command::CreaseDecay(Decay::Chaikin) => f.write_str(" chaikin"),

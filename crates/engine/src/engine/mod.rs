@@ -14,18 +14,19 @@ use std::sync::Arc;
 use glam::Vec2;
 use limn_document::camera::Camera;
 use limn_document::command::{COMMANDS, Command};
+use limn_document::remedy::Remedy;
 use limn_document::{Bounds, CommandError, Document, Outcome};
 use limn_formats::parcel::Parcel;
 use limn_mesh::{Mesh, Plan, SCHEMES, SHAPES};
 use limn_render::{Gpu, Renderer, Screen, Tier};
 use wasm_bindgen::prelude::*;
 
-use crate::gestures::{Gestures, Viewport};
+use crate::gestures::{self, Gestures, Viewport};
 use crate::kernel::Remote;
 use crate::making::{Made, Making, Parts};
-use crate::pick::pick;
+use crate::pick::{mark, pick};
 use crate::post::{Clock, Post};
-use crate::protocol::{Card, CommandInfo, Hello, Message, ModelInfo, SchemeInfo, Times};
+use crate::protocol::{Card, CommandInfo, Hello, Message, ModelInfo, Offer, SchemeInfo, Times};
 use crate::report::Facts;
 use crate::shorthand::{self, Short};
 use crate::{controls, keys};
@@ -270,6 +271,13 @@ impl Engine {
                 camera.dolly(factor, Vec2::ZERO, aspect, &bounds);
                 return self.go(camera);
             }
+            Some(Short::Mark { what, amount, at }) => match self.mark(what, amount, at) {
+                Some(command) => {
+                    expanded = command;
+                    &expanded
+                }
+                None => return,
+            },
             None => text,
         };
         let camera = self.document.view().camera;
@@ -397,11 +405,21 @@ impl Engine {
     }
 
     fn log(&self, command: &str, text: String, ok: bool) {
-        self.post.send(&Message::Log { command: command.to_owned(), text, ok });
+        self.post.send(&Message::Log { command: command.to_owned(), text, ok, offer: None });
     }
 
     fn refuse(&self, command: &str, error: &CommandError) {
-        self.log(command, limn_document::words::sentence(&error.to_string()), false);
+        let remedy = command.parse().ok().and_then(|parsed| self.document.remedy(&parsed, error));
+        let offer = remedy.map(|Remedy { label, commands }| Offer { label, commands });
+        let text = limn_document::words::sentence(&error.to_string());
+        self.post.send(&Message::Log { command: command.to_owned(), text, ok: false, offer });
+    }
+
+    /// The command that marks what lies under a place on the canvas, in CSS pixels; none if nothing of the model does.
+    fn mark(&self, what: &str, amount: &str, at: Vec2) -> Option<String> {
+        let view = self.views.get(gestures::pane(&self.views, at))?;
+        let ray = self.document.view().camera.ray(view.pointer(at), self.document.aspect());
+        mark(self.document.polygons()?, &ray, what, amount)
     }
 
     /// What a command asks of the host.

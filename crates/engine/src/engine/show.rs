@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec2, Vec3};
 use limn_document::Source;
 use limn_document::camera::{Bounds, UpAxis};
+use limn_document::export::ExportError;
 use limn_document::view::{Background, Edges, Shading, insert_name};
 use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
@@ -201,6 +202,8 @@ impl Engine {
             model,
             scheme: plan.as_ref().map_or("", |p| p.scheme.info.id),
             params: controls::parameters(document),
+            runs: controls::runs(document),
+            fairings: plan.iter().flat_map(|p| p.fairings.iter().map(|f| [f.at, f.iterations])).collect(),
             level: plan.as_ref().map_or(0, |p| p.level),
             levels: report::ruler(document),
             shown,
@@ -287,11 +290,16 @@ impl Engine {
         let Some(made) = &self.shown else { return };
         match self.document.export_packed(&made.refined, file) {
             Ok(packed) => self.post.bytes("write", &[("name", JsValue::from(file))], &packed),
-            Err(error) => self.log(
-                &format!("export {file}"),
-                sentence(&error.to_string()).replace(".obj or .glb", ".obj, .glb or .png"),
-                false,
-            ),
+            Err(error) => {
+                let why = match error {
+                    // The document knows nothing of pictures.
+                    ExportError::Format { .. } => {
+                        format!("`{file}` does not say in which format to write; end it in .obj, .glb or .png.")
+                    }
+                    _ => sentence(&error.to_string()),
+                };
+                self.log(&format!("export {file}"), why, false);
+            }
         }
     }
 
@@ -317,6 +325,7 @@ impl Engine {
                             command: format!("export {name}"),
                             text: sentence(&error.to_string()),
                             ok: false,
+                            offer: None,
                         }),
                     }
                 });
