@@ -136,7 +136,7 @@ function receive(message) {
       break;
     case "log":
       panel.log(message);
-      if (!message.ok && (message.offer || !panel.listening)) refused(message);
+      if (!message.ok && !panel.listening) refused(message);
       break;
     case "file":
       save(message);

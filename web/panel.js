@@ -12,7 +12,7 @@ import { Plan } from "./plan.js";
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {import("./protocol.js").Hello} Hello */
 /** @typedef {"view" | "surface" | "report" | "console" | "help"} Tab */
-/** @typedef {{ command: string, text: string, ok: boolean }} Line */
+/** @typedef {{ command: string, text: string, ok: boolean, offer: import("./protocol.js").Offer | null }} Line */
 
 /** @type {[Tab, string][]} */
 const TABS = [["view", "View"], ["surface", "Surface"], ["report", "Report"], ["console", "Console"], ["help", "Help"]];
@@ -221,10 +221,20 @@ export class Panel {
 
   /** @param {Line} line */
   log(line) {
-    this.#log.append(el("li", { className: line.ok ? "" : "error" }, el("code", {}, line.command), ...(line.text ? [el("pre", {}, line.text)] : [])));
+    this.#log.append(el("li", { className: line.ok ? "" : "error" }, el("code", {}, line.command), ...(line.text ? [el("pre", {}, line.text)] : []),
+      ...(line.offer ? [this.#offer(line.offer)] : [])));
     while (this.#log.children.length > this.most) this.#log.firstElementChild?.remove();
     const pane = byId("pane-console");
     pane.scrollTop = pane.scrollHeight;
+  }
+
+  /** What would let a refused command work, once. @param {import("./protocol.js").Offer} offer */
+  #offer({ label, commands }) {
+    const button = el("button", { type: "button", className: "link", onclick: () => {
+      button.remove();
+      commands.forEach((command) => this.send(command, true));
+    } }, label);
+    return button;
   }
 
   /** @param {Hello} hello */

@@ -78,6 +78,8 @@ describe("the panel", () => {
     await page.keyboard.press("Enter");
     await page.waitForFunction(() => document.querySelectorAll("#log li").length === 3);
     assert.deepEqual(await cards(page), []);
+    const offer = page.locator("#log").getByRole("button", { name: /^Use level \d+$/ });
+    assert.equal(await offer.count(), 2, "and what would let it");
     await page.locator("#command").press("ArrowUp");
     assert.equal(await page.locator("#command").inputValue(), "level 99", "what was typed comes back");
   });
