@@ -3,7 +3,7 @@
 //! One way in and one way out, so that the page holds one copy of each and both platforms agree on every bit. Reading is
 //! exact (the f64 nearest to the decimal). Writing rounds to decimal places and then takes the fewest digits that read back.
 //!
-//! No number is written by the standard library: see [`crate::decimal`] for what that saves.
+//! No number is written by the standard library: see `decimal.rs` for what that saves.
 
 use crate::decimal::{self, DOUBLE, SINGLE};
 

@@ -22,10 +22,10 @@ use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues, complete};
 pub use crate::report::{grouped, memory};
 use crate::scheme::{Boundary, Entry, Tags};
-use crate::sink::{Cursor, Record, Source};
+use crate::sink::{Cursor, Record, Source, weigh};
 use crate::split::{Level, Split, Triangles};
 use crate::topology::{Connectivity, Counts};
-use crate::track::{Owned, Stage, Track, weigh};
+use crate::track::{Owned, Stage, Track};
 use std::sync::Arc;
 
 /// What a plan will make, in closed form.

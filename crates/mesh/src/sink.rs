@@ -231,3 +231,15 @@ impl Sink for Record<'_> {
         }
     }
 }
+
+/// What a row makes of values that `value` gives.
+pub(crate) fn weigh<const N: usize>(row: &[(Source, f64)], value: impl Fn(Source) -> [f64; N]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for &(source, w) in row {
+        let v = value(source);
+        for k in 0..N {
+            sum[k] += w * v[k];
+        }
+    }
+    sum
+}

@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
-use crate::sink::{Cursor, Eval, Source};
+use crate::sink::{Cursor, Eval, Source, weigh};
 use crate::split::stored::Cut;
 use crate::split::{FaceKind, FaceShape, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Counts, Topology};
@@ -491,15 +491,4 @@ fn zeroed<T: Clone + bytemuck::Zeroable>(buffer: &mut Vec<T>, length: usize) {
     if buffer.len() != length {
         *buffer = bytemuck::zeroed_vec(length);
     }
-}
-
-pub(crate) fn weigh<const N: usize>(row: &[(Source, f64)], value: impl Fn(Source) -> [f64; N]) -> [f64; N] {
-    let mut sum = [0.0; N];
-    for &(source, w) in row {
-        let v = value(source);
-        for k in 0..N {
-            sum[k] += w * v[k];
-        }
-    }
-    sum
 }

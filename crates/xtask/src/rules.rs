@@ -16,6 +16,8 @@ const LINES: usize = 500;
 const LONG: &[(&str, &str)] = &[
     ("crates/formats/src/obj.rs", "one pass over the text, whose state every statement shares"),
     ("crates/formats/tests/gltf.rs", "small files written out in place, a test each"),
+    ("crates/mesh/tests/limit.rs", "one way to measure a limit, a test for each that claims one"),
+    ("crates/mesh/tests/naive_apart.rs", "one reference of cut meshes, and every scheme that is held against it"),
     ("crates/render/tests/pictures.rs", "pictures of one scene, a test each, with the scene's helpers"),
 ];
 

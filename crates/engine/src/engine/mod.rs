@@ -4,6 +4,7 @@
 //! which the host calls as long as `has_work` and `wants_frame` say so. A command changes the document at once; `sync`
 //! compares what is wanted with what is shown and with what is being made.
 
+mod aim;
 mod open;
 mod panes;
 mod show;
@@ -15,7 +16,7 @@ use glam::Vec2;
 use limn_document::camera::Camera;
 use limn_document::command::{COMMANDS, Command};
 use limn_document::remedy::Remedy;
-use limn_document::{Bounds, CommandError, Document, Outcome};
+use limn_document::{CommandError, Document, Outcome};
 use limn_formats::parcel::Parcel;
 use limn_mesh::{Mesh, Plan, SCHEMES, SHAPES};
 use limn_render::{Gpu, Renderer, Screen, Tier};
@@ -461,53 +462,6 @@ impl Engine {
         if log {
             self.log(text, answer.trim_end().to_owned(), true);
         }
-    }
-
-    /// Where the camera is or is on its way to.
-    fn aim(&self) -> Camera {
-        self.tween.as_ref().map_or(self.document.view().camera, |t| t.to)
-    }
-
-    /// Moves the camera there, smoothly unless motion is unwelcome.
-    fn go(&mut self, to: Camera) {
-        let to = to.quantised();
-        let from = self.document.view().camera;
-        if self.calm || self.shown.is_none() || from.projection != to.projection || from.up != to.up {
-            self.tween = None;
-            self.document.view_mut().camera = to;
-        } else {
-            self.tween = Some(Tween { from, to, start: self.clock.now() });
-        }
-        self.dirty.picture = true;
-        self.dirty.state = true;
-    }
-
-    /// Puts the camera where it was going.
-    fn finish_tween(&mut self) {
-        if let Some(tween) = self.tween.take() {
-            self.document.view_mut().camera = tween.to;
-            self.dirty.picture = true;
-            self.dirty.camera = true;
-        }
-    }
-
-    /// The box of what is to be seen: the model, or the unit box.
-    fn bounds(&self) -> Bounds {
-        self.document.bounds()
-    }
-
-    fn measure(&mut self, width: u32, height: u32, pixel_ratio: f32, insets: &[f32]) {
-        self.pixel_ratio = if pixel_ratio.is_finite() { pixel_ratio.clamp(0.25, 8.0) } else { 1.0 };
-        let inset = |i: usize| insets.get(i).copied().unwrap_or(0.0);
-        let size = Vec2::new(width as f32, height as f32) / self.pixel_ratio;
-        self.finish_tween();
-        self.making_room = None;
-        self.take_viewport(Viewport::new(size, [inset(0), inset(1), inset(2), inset(3)]));
-    }
-
-    fn take_viewport(&mut self, viewport: Viewport) {
-        self.viewport = viewport;
-        self.divide();
     }
 
     /// Whether a command line opens something, for logs.

@@ -35,11 +35,10 @@ mod sqrt3;
 use crate::face_varying::{self, Sharp};
 use crate::plan::Step;
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags};
-use crate::sink::{Cursor, Source};
+use crate::sink::{Cursor, Source, weigh};
 use crate::soup::NONE;
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Counts, Topology, boundary_rank, is_boundary};
-use crate::track::weigh;
 
 /// Texture coordinates of a level: half-edges with seams cut, a value a vertex, and which of them stay.
 #[derive(Debug)]

@@ -27,6 +27,7 @@ mod nurss;
 mod params;
 mod poke;
 mod quad_triangle;
+mod rules;
 mod sqrt3;
 mod tri_to_quad;
 
@@ -45,6 +46,7 @@ pub use nurss::Nurss;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use poke::Poke;
 pub use quad_triangle::QuadTriangle;
+pub use rules::{Boundary, Decay, FaceVarying, Rules, TriangleRule};
 pub use sqrt3::Sqrt3;
 pub use tri_to_quad::TriToQuad;
 
@@ -183,69 +185,6 @@ impl Info {
     }
 }
 
-/// What happens at the rim of an open mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Boundary {
-    /// As [`Boundary::EdgeOnly`], and faces that touch the rim are refined but not shown.
-    None,
-    /// A smooth boundary curve, rounded at corners too.
-    EdgeOnly,
-    /// A smooth boundary curve; vertices with one face are corners and stay.
-    #[default]
-    EdgeAndCorner,
-}
-
-/// How semi-sharp creases soften from level to level.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Decay {
-    /// By one.
-    #[default]
-    Uniform,
-    /// By Chaikin's rule along the crease, then by one.
-    Chaikin,
-}
-
-/// What Catmull-Clark makes of triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TriangleRule {
-    /// The same as of other polygons.
-    #[default]
-    CatmullClark,
-    /// Weights that make them smoother.
-    Smooth,
-}
-
-/// Which parts of a seam texture coordinates keep linear, as OpenSubdiv has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FaceVarying {
-    /// None: smooth everywhere.
-    None,
-    /// Corners.
-    CornersOnly,
-    /// Corners, and where three or more regions meet.
-    #[default]
-    CornersPlus1,
-    /// Those, and darts and concave corners.
-    CornersPlus2,
-    /// All boundaries of regions.
-    Boundaries,
-    /// Everything is linear.
-    All,
-}
-
-/// What holds for every scheme of a plan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rules {
-    /// What happens at the rim of an open mesh.
-    pub boundary: Boundary,
-    /// How creases soften.
-    pub decay: Decay,
-    /// What Catmull-Clark makes of triangles.
-    pub triangle: TriangleRule,
-    /// What seams do to texture coordinates.
-    pub face_varying: FaceVarying,
-}
-
 /// What rules have to know beside the connectivity.
 #[derive(Clone, Copy, Debug)]
 pub struct Tags<'a> {
@@ -319,7 +258,7 @@ pub enum Creasing {
     None,
     /// Its rules ask [`crate::crease`], or it smooths nothing anyway.
     Rules,
-    /// As the rim of a mesh that is cut there ([`crate::apart`]), semi-sharp ones as far as they are sharp.
+    /// As the rim of a mesh that is cut there (`apart.rs`), semi-sharp ones as far as they are sharp.
     Apart,
     /// The same, but only what is infinitely sharp.
     ApartForEver,
