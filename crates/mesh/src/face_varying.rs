@@ -195,6 +195,9 @@ pub(crate) fn pin_boundary(uv: &impl Connectivity, loose: &[u32], pins: &mut Vec
 
 /// The children of `loose` half-edges of `level`, which `split` halves.
 pub(crate) fn below(loose: &[u32], level: &Level<'_>, split: Split) -> Vec<u32> {
+    if !crate::FULL {
+        return Vec::new();
+    }
     let mut children: Vec<u32> = loose.iter().filter_map(|&h| halves(level, split, h)).flatten().collect();
     children.sort_unstable();
     children
