@@ -9,7 +9,7 @@ use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_glb, write_ob
 use limn_mesh::{Faces, Refined};
 
 use crate::document::Document;
-use crate::merge::copies;
+use crate::merge::{copies, file_order};
 
 /// Why nothing was written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -91,7 +91,8 @@ impl Document {
         }
         let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-        let merged = copies(refined).map(|same| Merged::new(refined, &same));
+        let (same, first) = (copies(refined), file_order(mesh));
+        let merged = (same.is_some() || !first.is_empty()).then(|| Merged::new(refined, same, first));
         let (points, colors, corners) = match &merged {
             Some(m) => (&m.points[..], &m.colors[..], &m.corners[..]),
             None => (&refined.points[..], &refined.colors[..], refined.faces.corners()),
@@ -132,31 +133,30 @@ impl Document {
     }
 }
 
-/// A level whose copies of split vertices are one again.
+/// A level whose copies of split vertices are one again, and whose first vertices are those of the file.
 struct Merged {
     points: Vec<[f32; 3]>,
     colors: Vec<[f32; 4]>,
     corners: Vec<u32>,
-    /// Which vertices are kept.
-    kept: Vec<bool>,
+    /// The vertices that are kept, in the order of the file.
+    kept: Vec<u32>,
 }
 
 impl Merged {
-    fn new(refined: &Refined, same: &[u32]) -> Merged {
-        let kept: Vec<bool> = same.iter().zip(0u32..).map(|(&to, v)| to == v).collect();
-        // A copy comes after its original, so that one pass numbers both.
-        let mut number: Vec<u32> = Vec::with_capacity(same.len());
-        let mut next = 0;
-        for (&to, v) in same.iter().zip(0u32..) {
-            if to == v {
-                number.push(next);
-                next += 1;
-            } else {
-                number.push(number.get(to as usize).copied().unwrap_or_default());
+    fn new(refined: &Refined, same: Option<Vec<u32>>, first: Vec<u32>) -> Merged {
+        let all = refined.points.len() as u32;
+        let same = same.unwrap_or_else(|| (0..all).collect());
+        let is_kept = |&v: &u32| same.get(v as usize) == Some(&v);
+        let rest = first.len() as u32..all;
+        let kept: Vec<u32> = first.into_iter().chain(rest).filter(is_kept).collect();
+        let mut number = vec![0; same.len()];
+        for (&v, i) in kept.iter().zip(0..) {
+            if let Some(slot) = number.get_mut(v as usize) {
+                *slot = i;
             }
         }
-        let corners =
-            refined.faces.corners().iter().map(|&c| number.get(c as usize).copied().unwrap_or_default()).collect();
+        let of = |c: &u32| same.get(*c as usize).and_then(|&v| number.get(v as usize)).copied().unwrap_or_default();
+        let corners = refined.faces.corners().iter().map(of).collect();
         let mut merged = Merged { points: Vec::new(), colors: Vec::new(), corners, kept };
         merged.points = merged.keep(&refined.points);
         merged.colors = merged.keep(&refined.colors);
@@ -164,6 +164,6 @@ impl Merged {
     }
 
     fn keep<T: Copy>(&self, values: &[T]) -> Vec<T> {
-        values.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(v, _)| *v).collect()
+        self.kept.iter().filter_map(|&v| values.get(v as usize).copied()).collect()
     }
 }

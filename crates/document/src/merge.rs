@@ -12,7 +12,29 @@
 //! Vertices of level 0 keep their numbers at every level, which is what makes the walk find u and v. Cost: sorting the
 //! level's edges; nothing where no vertex was split.
 
-use limn_mesh::{Refined, order};
+use limn_mesh::{Mesh, Refined, order};
+
+/// Vertices of level 0 in the order of the file that they came from, copies behind; empty if they lie so.
+pub(crate) fn file_order(mesh: &Mesh) -> Vec<u32> {
+    if mesh.vertex_source.is_sorted() {
+        return Vec::new();
+    }
+    let mut keys: Vec<u64> = mesh.vertex_source.iter().zip(0..).map(|(&source, v)| order::key(source, v)).collect();
+    order::sort_keys(&mut keys);
+    let mut is_copy = vec![false; keys.len()];
+    let mut all = Vec::with_capacity(keys.len());
+    let mut before = u32::MAX;
+    for key in keys {
+        let [source, v] = order::parts(key);
+        match is_copy.get_mut(v as usize) {
+            Some(copy) if source == before => *copy = true,
+            _ => all.push(v),
+        }
+        before = source;
+    }
+    all.extend(is_copy.iter().zip(0..).filter(|(copy, _)| **copy).map(|(_, v)| v));
+    all
+}
 
 /// For every vertex of the level the vertex that it is a copy of (the lowest, itself if it is none); `None` if no vertex
 /// has copies.

@@ -62,6 +62,39 @@ fn exports_keep_order_groups_and_materials() {
     assert!(d.export(&refined, "out.obj").is_err(), "a level of another mesh");
 }
 
+/// Faces in no order are put into one when a mesh is built; a file has its vertices as the model had them all the same.
+#[test]
+fn exports_of_scattered_faces_keep_the_order_of_vertices() {
+    const SIDE: usize = 70;
+    let mut text = String::new();
+    // Every vertex at a place of its own: numbers times a step that is prime to their count.
+    let (vertices, faces) = ((SIDE + 1) * (SIDE + 1), SIDE * SIDE);
+    let place = |v: usize| v * 1999 % vertices;
+    let mut lines = vec![String::new(); vertices];
+    (0..vertices).for_each(|v| lines[place(v)] = format!("v {} {} 0", v % (SIDE + 1), v / (SIDE + 1)));
+    text += &lines.join("\n");
+    for f in (0..faces).map(|f| f * 1999 % faces) {
+        let v = f / SIDE * (SIDE + 1) + f % SIDE;
+        let [a, b, c, d] = [v, v + 1, v + SIDE + 2, v + SIDE + 1].map(|v| place(v) + 1);
+        text += &format!("\nf {a} {b} {c} {d}");
+    }
+    let mut d = Document::new(BUDGET);
+    load(&mut d, &text);
+    assert!(!d.mesh().unwrap().vertex_source.is_sorted());
+    run(&mut d, "scheme linear");
+    for level in 0..2 {
+        run(&mut d, &format!("level {level}"));
+        let written = written(&d);
+        assert_eq!(written[..vertices], lines[..], "level {level}");
+        let (_, model, _) = obj(&written.join("\n"));
+        let mut areas = model.soup.corners.chunks(4).map(|face| {
+            let [a, _, c, _] = [0, 1, 2, 3].map(|k| model.soup.positions[face[k] as usize]);
+            (c[0] - a[0]).abs() * (c[1] - a[1]).abs()
+        });
+        assert!(areas.all(|area| area == 0.25f32.powi(level)), "level {level}");
+    }
+}
+
 /// The `v` lines and the number of different ends of the `f` lines of an export.
 fn written(d: &Document) -> Vec<String> {
     let refined = refine(d.mesh().unwrap(), &d.plan().unwrap(), BUDGET).unwrap();

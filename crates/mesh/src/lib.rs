@@ -43,6 +43,7 @@ pub mod plan;
 pub mod refine;
 pub mod refined;
 pub mod report;
+mod scattered;
 pub mod scheme;
 pub mod shapes;
 pub mod sink;

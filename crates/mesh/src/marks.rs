@@ -99,13 +99,15 @@ pub(crate) fn resolve(
     }
     if !marks.holes.is_empty() {
         let mut holes = vec![false; face_source.len()];
+        let last = face_source.iter().max().map_or(0, |&f| f as usize);
+        let mut face_of = vec![NONE; last + 1];
+        face_source.iter().zip(0..).for_each(|(&f, face)| face_of[f as usize] = face);
         for &f in &marks.holes {
-            // Faces that were left out leave the others in order.
-            let found = face_source.binary_search(&f);
-            if let Ok(face) = found {
-                holes[face] = true;
+            let hole = face_of.get(f as usize).and_then(|&face| holes.get_mut(face as usize));
+            lose(hole.is_some(), [f, NONE]);
+            if let Some(hole) = hole {
+                *hole = true;
             }
-            lose(found.is_ok(), [f, NONE]);
         }
         if holes.contains(&true) {
             out.holes = holes;

@@ -15,6 +15,7 @@
 use crate::connect::{self, Matching};
 use crate::marks;
 use crate::report::{Note, Report};
+use crate::scattered;
 use crate::soup::{NONE, Soup};
 use crate::split::FaceShape;
 use crate::topology::{Connectivity, Counts, Topology, is_boundary};
@@ -45,9 +46,10 @@ pub struct Mesh {
     /// Knot intervals of half-edge `h`: at its origin toward its target in `2h`, at its target toward its origin in
     /// `2h + 1`; empty if all are 1.
     pub knots: Vec<f32>,
-    /// The lowest position index of each vertex's class. Copies made by splitting share it.
+    /// The lowest position index of each vertex's class. Copies made by splitting share it. It rises up to them, unless
+    /// the soup's faces lie in no order (`scattered.rs`).
     pub vertex_source: Vec<u32>,
-    /// The soup's face behind each face.
+    /// The soup's face behind each face; it rises, with the same exception.
     pub face_source: Vec<u32>,
     /// The lowest position index of the class of *every* position in the soup.
     pub weld_class: Vec<u32>,
@@ -136,7 +138,8 @@ impl Mesh {
         let mut notes = Vec::new();
         let welded = weld_class.iter().enumerate().filter(|(i, c)| *i as u32 != **c).count() as u64;
         note(&mut notes, welded, || Note::Welded { count: welded });
-        let mut faces = Faces::clean(soup, &weld_class);
+        let order = scattered::order(soup, &weld_class);
+        let mut faces = Faces::clean(soup, &weld_class, order.as_deref());
         let isolated = isolated(soup, &weld_class);
         note(&mut notes, isolated.0, || Note::Isolated { count: isolated.0, first: isolated.1 });
         let Faces { degenerate, repaired, .. } = faces;
@@ -146,9 +149,16 @@ impl Mesh {
             return Err(TopologyError::NoFaces { dropped: degenerate.0 });
         }
 
-        let m = connect::connect(&faces.offsets, &mut faces.corners, &mut faces.slots, soup.positions.len());
-        let (topology, vertex_source) =
-            Topology::assemble(faces.offsets.clone(), &faces.corners, soup.positions.len(), &m.mate);
+        let positions = soup.positions.len();
+        let class = order.map(|_| scattered::renumber(&mut faces.corners, positions));
+        let mut m = connect::connect(&faces.offsets, &mut faces.corners, &mut faces.slots, positions);
+        let (topology, mut vertex_source) =
+            Topology::assemble(faces.offsets.clone(), &faces.corners, positions, &m.mate);
+        if let Some(class) = class {
+            for numbers in [&mut vertex_source[..], m.non_manifold.as_flattened_mut(), m.one_sided.as_flattened_mut()] {
+                numbers.iter_mut().for_each(|v| *v = class[*v as usize]);
+            }
+        }
         let (sharp, joined, split) = tie(&topology, &vertex_source, soup.positions.len());
         report(&mut notes, &m, &faces, split);
         let marks::Resolved { edge_sharpness, vertex_sharpness, holes, knots } =
@@ -307,7 +317,7 @@ struct Faces {
 }
 
 impl Faces {
-    fn clean(soup: &Soup, class: &[u32]) -> Faces {
+    fn clean(soup: &Soup, class: &[u32], order: Option<&[u32]>) -> Faces {
         let n = soup.corners.len();
         let mut out = Faces {
             offsets: Vec::with_capacity(soup.face_count() + 1),
@@ -319,6 +329,7 @@ impl Faces {
         };
         out.offsets.push(0);
         for f in 0..soup.face_count() {
+            let f = order.map_or(f, |order| order[f] as usize);
             let start = out.corners.len();
             for c in soup.face_range(f) {
                 let v = class[soup.corners[c] as usize];
@@ -376,9 +387,7 @@ impl Faces {
 }
 
 fn count(tally: &mut (u64, u32), f: usize) {
-    if tally.0 == 0 {
-        tally.1 = f as u32;
-    }
+    tally.1 = if tally.0 == 0 { f as u32 } else { tally.1.min(f as u32) };
     tally.0 += 1;
 }
 
@@ -416,10 +425,10 @@ fn tie(t: &Topology, source: &[u32], positions: usize) -> (Vec<bool>, Vec<bool>,
 }
 
 fn report(notes: &mut Vec<Note>, m: &Matching, faces: &Faces, split: (u64, u32)) {
-    if let Some(&f) = m.turned.first() {
-        notes.push(Note::Turned { count: m.turned.len() as u64, first: faces.source[f as usize] });
+    if let Some(first) = m.turned.iter().map(|&f| faces.source[f as usize]).min() {
+        notes.push(Note::Turned { count: m.turned.len() as u64, first });
     }
-    if let Some(&first) = m.non_manifold.first() {
+    if let Some(first) = m.non_manifold.iter().map(|&[a, b]| [a.min(b), a.max(b)]).min() {
         notes.push(Note::NonManifoldEdges { count: m.non_manifold.len() as u64, first });
     }
     if let Some(&first) = m.one_sided.first() {
