@@ -105,6 +105,13 @@ describe("commands that shape the surface", () => {
   }
 });
 
+/** How many pixels have the colour of marks on the cage. @param {import("pngjs").PNG} png */
+function orange({ data }) {
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) count += Number((data[i] ?? 0) > 200 && (data[i] ?? 0) > 2 * (data[i + 2] ?? 0));
+  return count;
+}
+
 describe("shaping by hand", () => {
   const here = own();
   /** A page with the panel open at what shapes the surface. @param {Parameters<typeof visit>[2]} [options] */
@@ -121,6 +128,7 @@ describe("shaping by hand", () => {
       const before = await picture(page);
       await page.getByRole("button", { name: "Crease", exact: true }).click();
       await ready(page, (state) => state.values.cage === "on");
+      assert.equal(orange(await picture(page)), 0, "nothing is marked");
       await page.locator("#mark-hint").getByText("an edge of the cage").waitFor();
       await page.getByRole("slider", { name: "Sharpness" }).fill("3");
       const box = await page.locator("#stage").boundingBox();
@@ -128,6 +136,7 @@ describe("shaping by hand", () => {
       const place = /** @type {const} */ ([(box.width - 340) / 2, box.height * 0.4]);
       await page.mouse.click(...place);
       await ready(page, (state) => /crease \d+-\d+ 3\n/.test(state.text));
+      assert.ok(orange(await picture(page)) > 100, "the cage shows it");
       // A drag turns the model and marks nothing.
       await page.mouse.move(...place);
       await page.mouse.down();

@@ -20,7 +20,7 @@ fn main() {
         let mut data = SurfaceData::new(&fine.points, &normals, Faces::Quads(&fine.quads));
         data.parents = fine.parents;
         r.set_surface(&data).unwrap();
-        r.set_cage(&cage.points, &cage.edges()).unwrap();
+        r.set_cage(&cage.points, &cage.edges(), &[]).unwrap();
         let size = r.bounds().unwrap().max[0];
         let camera = perspective([2.9 * size, 2.0 * size, 3.7 * size], [0.0; 3], aspect, 3.0 * size);
         for (theme, style) in [("light", Style::light()), ("dark", Style::dark())] {

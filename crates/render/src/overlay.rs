@@ -1,8 +1,8 @@
 //! Lines of the cage and points: one instance each, expanded to pixels in the vertex shader.
 //!
 //! ```text
-//!   a *==========* b      24 bytes an edge: both ends. Four vertices of a strip, as wide as the line and one
-//!                         pixel more for its soft rim, with round ends so that lines join.
+//!   a *==========* b      28 bytes an edge: both ends, and how it is marked. Four vertices of a strip, as wide as the
+//!                         line and one pixel more for its soft rim, with round ends so that lines join.
 //!   (o)                   12 bytes a point.
 //! ```
 //!
@@ -49,17 +49,19 @@ impl Instances {
         Ok(out)
     }
 
-    pub fn lines(gpu: &Gpu, points: &[[f32; 3]], edges: &[[u32; 2]]) -> Result<Instances, Error> {
+    pub fn lines(gpu: &Gpu, points: &[[f32; 3]], edges: &[[u32; 2]], marks: &[f32]) -> Result<Instances, Error> {
         Self::fill(gpu, edges.len(), |i| {
-            let mut line = [[0.0f32; 3]; 2];
+            let mut line = [0.0f32; 7];
             for (end, &v) in edges.get(i).unwrap_or(&[0; 2]).iter().enumerate() {
-                line[end] = *points.get(v as usize).ok_or(Error::Index {
+                let point = points.get(v as usize).ok_or(Error::Index {
                     corner: (2 * i + end) as u64,
                     index: v,
                     vertices: points.len() as u64,
                 })?;
+                line[3 * end..3 * end + 3].copy_from_slice(point);
             }
-            Ok(bytemuck::cast::<_, [u8; 24]>(line))
+            line[6] = marks.get(i).copied().unwrap_or_default();
+            Ok(bytemuck::cast::<_, [u8; 28]>(line))
         })
     }
 

@@ -160,7 +160,7 @@ impl Pipelines {
 
     fn make(&self, gpu: &Gpu, kind: Kind, shader: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
         use wgpu::CompareFunction::{Greater, LessEqual};
-        use wgpu::VertexFormat::{Float32x2, Float32x3, Snorm16x2, Uint32, Unorm8x4};
+        use wgpu::VertexFormat::{Float32, Float32x2, Float32x3, Snorm16x2, Uint32, Unorm8x4};
         let attribute = |shader_location, format, offset| wgpu::VertexAttribute { format, offset, shader_location };
         let position = [attribute(0, Float32x3, 0)];
         let shared = [attribute(0, Float32x3, 0), attribute(1, Snorm16x2, 12)];
@@ -172,7 +172,7 @@ impl Pipelines {
         ];
         let color = [attribute(5, Unorm8x4, 0)];
         let extra = [attribute(4, Float32x2, 0), attribute(5, Unorm8x4, 8)];
-        let line = [attribute(0, Float32x3, 0), attribute(1, Float32x3, 12)];
+        let line = [attribute(0, Float32x3, 0), attribute(1, Float32x3, 12), attribute(2, Float32, 24)];
         let layout = |attributes, array_stride| {
             Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
         };
@@ -186,7 +186,7 @@ impl Pipelines {
                 Vertices::Corner => ("vs_corner", vec![layout(&corner, 24)]),
                 Vertices::CornerExtra => ("vs_corner_extra", vec![layout(&corner, 24), layout(&extra, 12)]),
             },
-            Kind::Line | Kind::LineHidden => ("vs_line", vec![each(&line, 24)]),
+            Kind::Line | Kind::LineHidden => ("vs_line", vec![each(&line, 28)]),
             Kind::Point(stride) => ("vs_point", vec![each(&position, stride)]),
             Kind::Cast(stride) => ("vs_cast", vec![layout(&position, stride)]),
             Kind::Ground => ("vs_ground", vec![]),

@@ -116,12 +116,13 @@ impl Renderer {
         self.panes.get(pane)?.surface.as_ref()
     }
 
-    /// The cage: points and edges of level 0. Empty slices remove it.
+    /// The cage: points and edges of level 0. Empty slices remove it. `marks` may say by how much wider some edges are than
+    /// others, and shown in another colour: 1 for twice as wide. An edge from a vertex to itself is a dot.
     ///
     /// # Errors
     /// [`Error::Index`] for an edge past the end of the points.
-    pub fn set_cage(&mut self, points: &[[f32; 3]], edges: &[[u32; 2]]) -> Result<(), Error> {
-        self.cage = Instances::lines(&self.gpu, points, edges)?;
+    pub fn set_cage(&mut self, points: &[[f32; 3]], edges: &[[u32; 2]], marks: &[f32]) -> Result<(), Error> {
+        self.cage = Instances::lines(&self.gpu, points, edges, marks)?;
         Ok(())
     }
 

@@ -100,7 +100,7 @@ pub struct Style {
     pub wire: [f32; 4],
     /// Width of edges in CSS pixels.
     pub edge_width: f32,
-    /// sRGB colour and opacity of the cage's lines.
+    /// sRGB colour and opacity of the cage's lines. What is marked has red and blue swapped.
     pub cage_color: [f32; 4],
     /// Width of the cage's lines in CSS pixels.
     pub cage_width: f32,

@@ -246,7 +246,7 @@ fn the_cage_shows_fully_in_front_and_faintly_behind() {
     let Some(mut r) = renderer() else { return };
     set(&mut r, &square(), false);
     let points = [[-1.8, 0.5, 1.0], [1.8, 0.5, 1.0], [-1.8, -0.5, -1.0], [1.8, -0.5, -1.0]];
-    r.set_cage(&points, &[[0, 1], [2, 3]]).unwrap();
+    r.set_cage(&points, &[[0, 1], [2, 3]], &[]).unwrap();
     let style = Style { cage: true, cage_color: [0.0, 0.0, 1.0, 1.0], cage_width: 4.0, hidden: 0.3, ..plain() };
     let p = shoot(&mut r, &front(style.clone()), 64, 64);
     for x in [6, 20, 40, 57] {
@@ -264,17 +264,28 @@ fn the_cage_shows_fully_in_front_and_faintly_behind() {
     // Off, and a cage that lies in the surface.
     let p = shoot(&mut r, &front(Style { cage: false, ..style.clone() }), 64, 64);
     assert_near(p.at(20, 24), [255, 0, 0, 255], 2);
-    r.set_cage(&[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[[0, 1]]).unwrap();
-    let p = shoot(&mut r, &front(style), 64, 64);
+    r.set_cage(&[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[[0, 1]], &[]).unwrap();
+    let p = shoot(&mut r, &front(style.clone()), 64, 64);
     assert!((17..47).all(|x| near(p.at(x, 32), [0, 0, 255, 255], 3)));
-    assert_eq!(r.set_cage(&points, &[[0, 1], [2, 7]]), Err(Error::Index { corner: 3, index: 7, vertices: 4 }));
+    // Marked: twice as wide and red; and a dot four times as wide, hidden in its upper half by nothing.
+    let ends = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]];
+    r.set_cage(&ends, &[[0, 1], [2, 2]], &[1.0, 3.0]).unwrap();
+    let on_white = front(Style { surface: false, ..style });
+    let p = shoot(&mut r, &on_white, 64, 64);
+    for (y, seen) in [(27, false), (29, true), (32, true), (34, true), (37, false)] {
+        assert_eq!(near(p.at(32, y), [255, 0, 0, 255], 3), seen, "{y}: {:?}", p.at(32, y));
+    }
+    for (at, seen) in [([32, 16], true), ([26, 16], true), ([38, 16], true), ([32, 10], true), ([41, 16], false)] {
+        assert_eq!(near(p.at(at[0], at[1]), [255, 0, 0, 255], 3), seen, "{at:?}: {:?}", p.at(at[0], at[1]));
+    }
+    assert_eq!(r.set_cage(&points, &[[0, 1], [2, 7]], &[]), Err(Error::Index { corner: 3, index: 7, vertices: 4 }));
 }
 
 #[test]
 fn lines_that_pass_the_eye_are_cut_at_the_near_plane() {
     let Some(mut r) = renderer() else { return };
     // From far ahead to far behind, to the right of the eye: seen from the middle to the right rim.
-    r.set_cage(&[[0.5, 0.0, 0.0], [0.5, 0.0, 40.0]], &[[0, 1]]).unwrap();
+    r.set_cage(&[[0.5, 0.0, 0.0], [0.5, 0.0, 40.0]], &[[0, 1]], &[]).unwrap();
     let camera = perspective([0.0, 0.0, 10.0], [0.0; 3], 1.0, 11.0);
     let style = Style { cage: true, cage_color: [0.0, 0.0, 0.0, 1.0], cage_width: 3.0, ..plain() };
     let p = shoot(&mut r, &frame(camera, style), 64, 64);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use limn_document::compare::Pane;
 use limn_document::parameters;
 use limn_document::view::Shading;
+use limn_mesh::marks::INFINITE;
 use limn_mesh::{Connectivity, Job, Mesh, predict};
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -244,7 +245,8 @@ impl Engine {
         if let (true, Some(mesh)) = (cage, self.document.mesh().cloned())
             && self.caged.as_ref().is_none_or(|c| !Arc::ptr_eq(c, &mesh))
         {
-            match self.renderer.set_cage(&mesh.positions, &edges(&mesh)) {
+            let (edges, marks) = lines(&mesh);
+            match self.renderer.set_cage(&mesh.positions, &edges, &marks) {
                 Ok(()) => self.caged = Some(mesh),
                 Err(error) => self.trouble(&error.to_string()),
             }
@@ -265,13 +267,17 @@ impl Engine {
     }
 }
 
-/// Every edge once, by its two vertices.
-fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
+/// Every edge once, by its two vertices, and how wide it is drawn: the wider the sharper. Sharp vertices come behind, as dots.
+fn lines(mesh: &Mesh) -> (Vec<[u32; 2]>, Vec<f32>) {
     let t = &mesh.topology;
-    (0..t.edges())
-        .map(|e| {
-            let h = t.edge_half_edge(e);
-            [t.origin(h), t.origin(t.next(h))]
-        })
-        .collect()
+    let half_edges = (0..t.edges()).map(|e| t.edge_half_edge(e));
+    let mut edges: Vec<_> = half_edges.map(|h| [t.origin(h), t.origin(t.next(h))]).collect();
+    let width = |sharpness: &f32| (sharpness / INFINITE).min(1.0);
+    let mut marks: Vec<f32> = mesh.edge_sharpness.iter().map(width).collect();
+    for (sharpness, v) in mesh.vertex_sharpness.iter().zip(0..).filter(|(sharpness, _)| **sharpness > 0.0) {
+        marks.resize(edges.len(), 0.0);
+        edges.push([v; 2]);
+        marks.push(2.0 + width(sharpness));
+    }
+    (edges, marks)
 }

@@ -5,6 +5,7 @@ struct Shape {
     @builtin(position) position: vec4<f32>,
     @location(0) at: vec2<f32>,      // pixels along and across, from the start of the line or the middle of the point
     @location(1) length: f32,        // of the line, in pixels
+    @location(2) @interpolate(flat) half_width: f32,
 };
 
 // Clip position, pulled towards the viewer by some pixels' worth of depth while staying at its pixel.
@@ -22,8 +23,9 @@ fn vs_line(
     @builtin(vertex_index) index: u32,
     @location(0) a: vec3<f32>,
     @location(1) b: vec3<f32>,
+    @location(2) mark: f32,
 ) -> Shape {
-    let half_width = g.widths.z;
+    let half_width = g.widths.z * (1.0 + mark);
     var p = nudged(a, 2.0 + half_width);
     var q = nudged(b, 2.0 + half_width);
     var out: Shape;
@@ -52,24 +54,29 @@ fn vs_line(
     out.position = vec4(here.xy + shift / to_pixels, clamp(here.z, 0.0, 1.0), 1.0);
     out.at = vec2(length * end + (2.0 * end - 1.0) * reach, side * reach);
     out.length = length;
+    out.half_width = half_width;
     return out;
 }
 
 fn line_cover(in: Shape) -> f32 {
     let beyond = in.at.x - clamp(in.at.x, 0.0, in.length);
     let distance = length(vec2(beyond, in.at.y));
-    let half_width = g.widths.z;
-    return 1.0 - smoothstep(half_width - 0.5, half_width + 0.5, distance);
+    return 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, distance);
+}
+
+// What is marked is wider, and has red and blue swapped.
+fn line_color(in: Shape) -> vec4<f32> {
+    return vec4(select(g.cage.rgb, g.cage.bgr, in.half_width > g.widths.z), 1.0) * (g.cage.a * line_cover(in));
 }
 
 @fragment
 fn fs_line(in: Shape) -> @location(0) vec4<f32> {
-    return vec4(g.cage.rgb, 1.0) * (g.cage.a * line_cover(in));
+    return line_color(in);
 }
 
 @fragment
 fn fs_line_hidden(in: Shape) -> @location(0) vec4<f32> {
-    return vec4(g.cage.rgb, 1.0) * (g.cage.a * g.hidden.x * line_cover(in));
+    return line_color(in) * g.hidden.x;
 }
 
 @vertex
