@@ -79,20 +79,18 @@ impl Viewport {
         (scale, Vec2::new(middle.x, -middle.y))
     }
 
-    /// Parts of the free part, all of one size, for `count` pictures side by side (2 x 2 for four), each less `below` at its
-    /// foot for words. The way they are split leaves each the most room.
+    /// Parts of the free part, all of one size, for `count` pictures in a row, in a column, or two by two, each less `below` at
+    /// its foot for words. The way they are split leaves each the most room.
     pub fn split(&self, count: usize, below: f32) -> Vec<Viewport> {
         if count < 2 {
             return vec![*self];
         }
         let free = self.max - self.min;
-        let columns = match count {
-            4 => 2,
-            n if free.x >= free.y => n,
-            _ => 1,
-        };
-        let rows = count.div_ceil(columns);
-        let size = free / Vec2::new(columns as f32, rows as f32);
+        let size = |columns: usize| free / Vec2::new(columns as f32, (count / columns) as f32);
+        let room = |columns: &usize| (size(*columns) - Vec2::new(0.0, below)).min_element();
+        let ways = [1, 2, count].into_iter().filter(|columns| count.is_multiple_of(*columns));
+        let columns = ways.max_by(|a, b| room(a).total_cmp(&room(b))).unwrap_or(1);
+        let size = size(columns);
         let part = |i: usize| {
             let min = self.min + size * Vec2::new((i % columns) as f32, (i / columns) as f32);
             let max = min + size - Vec2::new(0.0, below.min(size.y * 0.4));
@@ -350,7 +348,10 @@ mod tests {
         assert_eq!(wide.split(1, 40.0), [wide]);
         assert_eq!(boxes(&wide, 2), [at(0., 50., 450., 410.), at(450., 50., 900., 410.)]);
         assert_eq!(boxes(&wide, 3)[2], at(600., 50., 900., 410.));
-        assert_eq!(boxes(&wide, 4)[1..3], [at(450., 50., 900., 210.), at(0., 250., 450., 410.)]);
+        // Four in a row where there is little height, two by two where there is.
+        assert_eq!(boxes(&wide, 4)[1..3], [at(225., 50., 450., 410.), at(450., 50., 675., 410.)]);
+        let square = Viewport::new(Vec2::new(800.0, 800.0), [0.0; 4]);
+        assert_eq!(boxes(&square, 4)[1..3], [at(400., 0., 800., 360.), at(0., 400., 400., 760.)]);
         let tall = Viewport::new(Vec2::new(400.0, 800.0), [0.0; 4]);
         assert_eq!(boxes(&tall, 2), [at(0., 0., 400., 360.), at(0., 400., 400., 760.)]);
         assert_eq!(boxes(&tall, 3).len(), 3);
