@@ -14,41 +14,39 @@
 
 use limn_mesh::{Mesh, Refined, order};
 
+/// The first vertex of level 0 at each position of the file; `u32::MAX` where there is none.
+fn first(mesh: &Mesh) -> Vec<u32> {
+    let mut first = vec![u32::MAX; mesh.weld_class.len()];
+    for (v, &source) in (0u32..mesh.vertex_source.len() as u32).zip(&mesh.vertex_source).rev() {
+        if let Some(slot) = first.get_mut(source as usize) {
+            *slot = v;
+        }
+    }
+    first
+}
+
 /// Vertices of level 0 in the order of the file that they came from, copies behind; empty if they lie so.
 pub(crate) fn file_order(mesh: &Mesh) -> Vec<u32> {
-    if mesh.vertex_source.is_sorted() {
+    if mesh.face_source.is_sorted() {
         return Vec::new();
     }
-    let mut keys: Vec<u64> = mesh.vertex_source.iter().zip(0..).map(|(&source, v)| order::key(source, v)).collect();
-    order::sort_keys(&mut keys);
-    let mut is_copy = vec![false; keys.len()];
-    let mut all = Vec::with_capacity(keys.len());
-    let mut before = u32::MAX;
-    for key in keys {
-        let [source, v] = order::parts(key);
-        match is_copy.get_mut(v as usize) {
-            Some(copy) if source == before => *copy = true,
-            _ => all.push(v),
-        }
-        before = source;
-    }
-    all.extend(is_copy.iter().zip(0..).filter(|(copy, _)| **copy).map(|(_, v)| v));
-    all
+    let first = first(mesh);
+    let is_copy = |(v, source): &(u32, &u32)| first.get(**source as usize) != Some(v);
+    let copies = (0u32..).zip(&mesh.vertex_source).filter(is_copy).map(|(v, _)| v);
+    first.iter().copied().filter(|v| *v != u32::MAX).chain(copies).collect()
 }
 
 /// For every vertex of the level the vertex that it is a copy of (the lowest, itself if it is none); `None` if no vertex
 /// has copies.
 pub(crate) fn copies(refined: &Refined) -> Option<Vec<u32>> {
     let mesh = refined.mesh();
-    let highest = mesh.vertex_source.iter().copied().max()?;
-    let mut lowest = vec![u32::MAX; highest as usize + 1];
+    let lowest = first(mesh);
     let mut same: Vec<u32> = (0..refined.points.len() as u32).collect();
     let mut any = false;
-    for (v, &source) in mesh.vertex_source.iter().enumerate() {
-        let Some(first) = lowest.get_mut(source as usize) else { continue };
-        *first = (*first).min(v as u32);
-        any |= *first != v as u32;
-        join(refined, &mut same, v as u32, *first);
+    for (v, &source) in (0u32..).zip(&mesh.vertex_source) {
+        let Some(&first) = lowest.get(source as usize) else { continue };
+        any |= first != v;
+        join(refined, &mut same, v, first);
     }
     if !any {
         return None;

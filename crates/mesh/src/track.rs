@@ -182,7 +182,7 @@ impl Track {
             beside: None,
             charted: FULL && uv && steps.iter().any(|s| !s.split.keeps_corners()),
             lone: Vec::new(),
-            limit: limit.map(Projection::new),
+            limit: limit.filter(|_| FULL).map(Projection::new),
             knots: Vec::new(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };

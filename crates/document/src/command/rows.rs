@@ -125,8 +125,8 @@ pub static COMMANDS: &[Spec] = &[
         flags: &[],
         keys: Keys::None,
         summary: "make edges S sharp: those along A-B-..., or those that faces meet in at more than DEG degrees (`angle DEG S`)",
-        detail: "Sharpness S keeps an edge sharp for S levels; 10 and more, or inf, for ever; 0 makes it smooth. Vertices are numbered \
-                 from 0 as in the file. `crease none` takes all creases away.",
+        detail: "S keeps an edge sharp for S levels; 10 and more, or inf, for ever; 0 makes it smooth. Vertices are numbered from 0 \
+                 as in the file. `crease none` takes all away.",
         example: "crease 4-5-1 2.5",
         build: |p| {
             let mut values = p.values.into_iter();
@@ -196,8 +196,8 @@ pub static COMMANDS: &[Spec] = &[
         flags: &[],
         keys: Keys::Parameters,
         summary: "choose the subdivision scheme",
-        detail: "A scheme for triangles triangulates other faces first, and the report says so. What a scheme lets one set follows as \
-                 KEY=VALUE; what is not named has its default. from=K leaves the first K levels to the scheme that was there.",
+        detail: "A scheme for triangles cuts other faces into triangles first. Parameters follow as KEY=VALUE; the others have their \
+                 defaults. from=K leaves the first K levels to the scheme before.",
         example: "scheme loop weights=warren",
         build: |p| match p.values.into_iter().next()? {
             Value::Text(id) => Some(Command::Scheme { id, parameters: p.parameters }),
@@ -225,8 +225,8 @@ pub static COMMANDS: &[Spec] = &[
         flags: &[],
         keys: Keys::Schemes,
         summary: "show up to three more schemes beside the present one, on the same model and level",
-        detail: "What a scheme lets one set follows its id. Choosing one of them with `scheme` makes the two change places. \
-                 `compare off` ends it; files and `info` are of the present scheme.",
+        detail: "Parameters follow an id. Choosing one of them with `scheme` makes the two change places. `compare off` ends it; \
+                 files and `info` are of the present scheme.",
         example: "compare loop weights=warren butterfly",
         build: |p| match p.values.into_iter().next()? {
             Value::Text(id) if id == "off" => {
