@@ -96,11 +96,6 @@ fn ignored(scheme: &limn_mesh::Info, honours: Honours) -> String {
         Honours { creases: true, .. } => {
             format!("of creases and corners {name} honours those that are infinitely sharp; {others}")
         }
-        Honours { corners: true, .. } => {
-            format!(
-                "on models with texture coordinates {name} honours infinitely sharp corners, but no creases; {others}"
-            )
-        }
         _ if scheme.family == Family::Dual => format!(
             "creases and corners are not honoured by {name}; Catmull–Clark and Loop do, and `scheme nurss` makes a crease \
              of a row of vertices A by `knot A-B 0` to every B beside it"

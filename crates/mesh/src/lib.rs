@@ -37,6 +37,7 @@ pub mod limit;
 pub mod marks;
 pub mod mesh;
 pub mod order;
+mod owned;
 pub mod pack;
 pub mod pair;
 pub mod plan;

@@ -17,7 +17,7 @@ use crate::limit::LimitRule;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
 use crate::refine::{Kept, RefineError};
-use crate::scheme::{Accepts, Boundary, Entry, Family, Honours, MOST_PARAMS, Params, Rules, Tags};
+use crate::scheme::{Accepts, Boundary, Entry, Honours, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
 use crate::topology::Connectivity;
 use crate::weld::bounds;
@@ -62,8 +62,6 @@ pub(crate) struct Step {
     pub size: f64,
     /// Whether the level that it begins with must have its half-edges stored in full.
     pub stored: bool,
-    /// Whether it knows of creases: a split that turns edges does not where texture coordinates have to be taken along.
-    pub creases: bool,
 }
 
 /// How the half-edges of a level are held.
@@ -160,21 +158,19 @@ impl Plan {
                 Split::Triangle => Held::Triangles,
                 _ => Held::Full,
             };
-            let creases = mesh.uv.is_none() || !matches!(split, Split::Sqrt3 { .. });
-            Ok(Step { scheme: run.scheme, params, split, size, stored, creases })
+            Ok(Step { scheme: run.scheme, params, split, size, stored })
         })
     }
 
-    /// The first scheme of the plan to which some of the marks of `mesh` mean nothing, and which do mean something to it on this
-    /// mesh; at level 0 the one that would come first.
+    /// The first scheme of the plan to which some of the marks of `mesh` mean nothing, and which do mean something to it; at
+    /// level 0 the one that would come first.
     pub fn ignores_marks(&self, mesh: &Mesh) -> Option<(&'static Entry, Honours)> {
         let both = || mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness);
         let semi_sharp = both().any(|&s| s > 0.0 && s < INFINITE);
         let creases = mesh.edge_sharpness.iter().any(|&s| s >= INFINITE);
         let corners = mesh.vertex_sharpness.iter().any(|&s| s >= INFINITE);
         let ignores = |e: &'static Entry| {
-            let mut honours = e.honours;
-            honours.creases &= mesh.uv.is_none() || e.info.family != Family::Sqrt3;
+            let honours = e.honours;
             let some = semi_sharp && !honours.semi_sharp || creases && !honours.creases || corners && !honours.corners;
             some.then_some((e, honours))
         };
@@ -184,7 +180,6 @@ impl Plan {
     /// What rules have to know of the plan at a step, and of the sharp vertices.
     pub(crate) fn tags<'a>(&self, step: &Step, at: u32, kept: Kept<'a>, creases: Option<&'a Creases>) -> Tags<'a> {
         let Kept { sharp, joined } = kept;
-        let creases = creases.filter(|_| step.creases);
         Tags { sharp, joined, creases, step: at, size: step.size, ..Tags::new(self.rules, step.params) }
     }
 

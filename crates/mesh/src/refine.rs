@@ -18,6 +18,7 @@ use crate::fairing;
 use crate::holes;
 use crate::limit::{Limit, Projection, Projector, limit};
 use crate::mesh::Mesh;
+use crate::owned::Owned;
 use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues, complete};
 pub use crate::report::{grouped, memory};
@@ -25,7 +26,7 @@ use crate::scheme::{Boundary, Entry, Tags};
 use crate::sink::{Cursor, Record, Source, weigh};
 use crate::split::{Level, Split, Triangles};
 use crate::topology::{Connectivity, Counts};
-use crate::track::{Owned, Stage, Track};
+use crate::track::{Stage, Track};
 use std::sync::Arc;
 
 /// What a plan will make, in closed form.
@@ -459,8 +460,7 @@ fn run<const N: usize>(
             while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
             knots = split.knots(&level, &knots, &lone);
             let below = below.stored_for(next);
-            creases =
-                creases.filter(|_| step.creases).and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
+            creases = creases.and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
             owned = Some(below);
         }
     }

@@ -18,79 +18,14 @@ use crate::fairing;
 use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
+use crate::owned::Owned;
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Eval, Source, weigh};
 use crate::split::stored::Cut;
-use crate::split::{FaceKind, FaceShape, Level, QuadLevel, Split, TriangleLevel, on};
+use crate::split::{FaceKind, Level, Split, on};
 use crate::topology::{Connectivity, Counts, Topology};
-
-/// Half-edges of a level between the first and the last.
-#[derive(Debug)]
-pub(crate) enum Owned {
-    Quads(QuadLevel),
-    Triangles(TriangleLevel),
-    Stored(Topology),
-}
-
-impl Owned {
-    /// The level below, to be filled. A stored one comes whole.
-    pub(crate) fn below(parent: &Level<'_>, split: Split, creases: Option<&Creases>) -> Owned {
-        match (split, parent) {
-            (Split::Quad, _) => Owned::Quads(QuadLevel::below(parent)),
-            (Split::Triangle, _) => Owned::Triangles(TriangleLevel::below(parent)),
-            (_, Level::Base(t)) if FULL => {
-                Owned::Stored(split.cut(t, creases).connect(t, split, split.children(*t), creases))
-            }
-            _ => unreachable!("stored levels come of stored levels"),
-        }
-    }
-
-    pub(crate) fn view(&self) -> Level<'_> {
-        match self {
-            Owned::Quads(q) => Level::Quads(q),
-            Owned::Triangles(t) => Level::Triangles(t),
-            Owned::Stored(t) => Level::Base(t),
-        }
-    }
-
-    /// The same level as the next step wants it held.
-    pub(crate) fn stored_for(self, next: Option<&Step>) -> Owned {
-        match self {
-            implicit if !FULL => implicit,
-            Owned::Stored(t) => Owned::Stored(t),
-            Owned::Quads(q) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&q)),
-            Owned::Triangles(t) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&t)),
-            implicit => implicit,
-        }
-    }
-
-    /// Fills up to `quota` faces, then vertices; true when complete.
-    pub(crate) fn fill(&mut self, parent: &Level<'_>, at: &mut u32, quota: &mut usize) -> bool {
-        on!(parent, c => {
-            let (faces, all) = (c.faces(), c.faces() + c.vertices());
-            let end = at.saturating_add((*quota).min(1 << 30) as u32).min(all);
-            let (from, to) = ((*at).min(faces), end.min(faces));
-            let (old_from, old_to) = ((*at).max(faces) - faces, end.max(faces) - faces);
-            // Without other schemes after it a scheme's own split made the parent.
-            match self {
-                Owned::Quads(q) if FULL || c.sure_shape() != Some(FaceShape::Triangles) => {
-                    q.fill(*c, from, to);
-                    q.fill_vertices(*c, old_from, old_to);
-                }
-                Owned::Triangles(t) if FULL || c.sure_shape() != Some(FaceShape::Quads) => {
-                    t.fill(*c, from, to);
-                    t.fill_vertices(*c, old_from, old_to);
-                }
-                _ => {}
-            }
-            *quota -= (end - *at) as usize;
-            *at = end;
-            end == all
-        })
-    }
-}
 
 /// A mesh's half-edges, or its texture coordinates', on their way through the levels.
 #[derive(Debug)]
@@ -126,6 +61,8 @@ pub(crate) struct Track {
     creases: Option<Creases>,
     /// Of texture coordinates that have to know how faces meet on seams: the mesh's own half-edges of `level`; none at level 0.
     beside: Option<Owned>,
+    /// How sharp these are.
+    beside_creases: Option<Creases>,
     charted: bool,
     /// Corners with two images, of `level`.
     lone: Vec<u32>,
@@ -180,6 +117,7 @@ impl Track {
             loose: Vec::new(),
             creases: None,
             beside: None,
+            beside_creases: None,
             charted: FULL && uv && steps.iter().any(|s| !s.split.keeps_corners()),
             lone: Vec::new(),
             limit: limit.filter(|_| FULL).map(Projection::new),
@@ -195,6 +133,9 @@ impl Track {
         }
         if !idle {
             track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
+            if FULL && track.charted {
+                track.beside_creases = Creases::of(mesh, &mesh.topology, plan.rules.face_varying);
+            }
             track.begin(&Level::Base(track.base(mesh)), plan, steps);
         }
         if FULL && !uv && steps.iter().any(|s| matches!(s.split, Split::Sqrt3 { .. })) {
@@ -240,13 +181,14 @@ impl Track {
             let next = self.work(&level, mesh, plan, steps, quota);
             match next {
                 Some(next) => {
-                    let Step { split, creases, .. } = steps[self.level as usize - 1];
-                    self.creases = self
-                        .creases
-                        .take()
-                        .filter(|_| creases)
-                        .zip(next.as_ref())
-                        .and_then(|(creases, next)| creases.below(&level, split, &next.view(), plan.rules.decay));
+                    let split = steps[self.level as usize - 1].split;
+                    // Charts bring their own.
+                    if !self.uv || split.keeps_corners() {
+                        self.creases =
+                            self.creases.take().zip(next.as_ref()).and_then(|(creases, next)| {
+                                creases.below(&level, split, &next.view(), plan.rules.decay)
+                            });
+                    }
                     self.loose = face_varying::below(&self.loose, &level, split);
                     self.half_edges = next;
                     let level = self.half_edges.take();
@@ -284,25 +226,35 @@ impl Track {
         let (values, pins) = (std::mem::take(&mut self.wide), std::mem::take(&mut self.pins));
         let old = Channel { topology: (*seams).clone(), values, pins };
         let knots = if self.level == 0 { &mesh.knots } else { &self.knots };
-        let (new, rows) = charts::carry(own, &old, knots, (step, self.level), plan.rules);
+        let creases = self.beside_creases.take();
+        let sharp = [creases.as_ref(), self.creases.as_ref()];
+        let (new, rows) = charts::carry(own, &old, (knots, sharp), (step, self.level), plan.rules);
         *quota = quota.saturating_sub(rows);
         self.level += 1;
         self.before = self.counts;
         self.counts = new.topology.counts();
         (self.wide, self.pins) = (new.values, new.pins);
-        // Numbers are new; what is sharp for ever is among the pins.
         self.creases = None;
         if following.is_none() {
             self.corners = new.topology.origins().to_vec();
             return None;
         }
         self.knots = step.split.knots(&Level::Base(own), knots, &step.split.lone(own));
-        self.beside = Some(Owned::below(&Level::Base(own), step.split, None));
+        let below = Owned::below(&Level::Base(own), step.split, creases.as_ref());
+        self.beside_creases =
+            creases.and_then(|c| c.below(&Level::Base(own), step.split, &below.view(), plan.rules.decay));
+        if let (Some(creases), Level::Base(own)) = (&self.beside_creases, below.view()) {
+            // Numbers of half-edges are the same in both.
+            let t = &new.topology;
+            let vertex = |v: u32| creases.vertex(own.origin(t.vertex_half_edge(v)));
+            self.creases = Creases::marked_by(t, |h| creases.edge(own.edge(h)), vertex, Vec::new());
+        }
+        self.beside = Some(below);
         Some(Owned::Stored(new.topology))
     }
 
     /// Takes the mesh's own half-edges one level further, where texture coordinates will have to know them.
-    fn follow(&mut self, mesh: &Mesh, split: Split, following: Option<&Step>) {
+    fn follow(&mut self, mesh: &Mesh, plan: &Plan, split: Split, following: Option<&Step>) {
         if !FULL || !self.charted || following.is_none() {
             return;
         }
@@ -311,7 +263,10 @@ impl Track {
         let mut below = Owned::below(&level, split, None);
         let mut at = 0;
         while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
-        self.beside = Some(below.stored_for(following));
+        let creases = self.beside_creases.take();
+        let below = below.stored_for(following);
+        self.beside_creases = creases.and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
+        self.beside = Some(below);
     }
 
     /// Works on a level; gives the half-edges of the next when it has come to that.
@@ -434,7 +389,7 @@ impl Track {
                 let stored = cut.connect(t, split, children as u32, tags.creases);
                 self.source = self.behind(t, split, &cut);
                 self.knots = split.knots(level, tags.knots, &self.lone);
-                self.follow(mesh, split, following);
+                self.follow(mesh, plan, split, following);
                 self.advance(split);
                 return Some(Some(Owned::Stored(stored)));
             }
@@ -443,7 +398,7 @@ impl Track {
                 if next.fill(level, at, quota) {
                     let next = self.next.take().map(|n| n.stored_for(following));
                     self.knots.clear();
-                    self.follow(mesh, split, following);
+                    self.follow(mesh, plan, split, following);
                     self.list(level, split);
                     self.advance(split);
                     return Some(next);

@@ -163,6 +163,81 @@ fn without_seams_they_are_points() {
     assert_eq!(compared.len(), SCHEMES.iter().filter(|e| !e.info.is_random()).count());
 }
 
+/// The same with creases: closed, crossing, ending and to the rim, and with another scheme before or after.
+#[test]
+fn on_creases_they_are_points() {
+    let mut compared = 0;
+    for (name, mut soup) in gallery() {
+        if soup.face_count() > 300 || soup.face_count() < 8 {
+            continue;
+        }
+        soup = triangulate_soup(&soup).0;
+        soup.uvs = soup.positions.iter().map(|p| [p[0], p[1]]).collect();
+        soup.uv_corners = soup.corners.clone();
+        let sides = |f: usize| {
+            let face = soup.face(f).to_vec();
+            (0..3).map(move |k| [face[k], face[(k + 1) % 3]]).collect::<Vec<_>>()
+        };
+        // All around a face, one edge of another, and every seventh edge.
+        let all: Vec<[u32; 2]> = (0..soup.face_count()).flat_map(sides).collect();
+        for marked in [all[0..3].to_vec(), all[12..13].to_vec(), all.iter().copied().step_by(7).collect()] {
+            soup.marks.creases = marked.iter().map(|&ends| (ends, 10.0)).collect();
+            let mesh = build(&soup);
+            const OTHER: &str = "interpolating-sqrt3";
+            const ONE: &str = "sqrt3";
+            let pairs = [[ONE, ONE], [OTHER, OTHER], [ONE, OTHER], [ONE, "loop"], ["loop", ONE], [ONE, "butterfly"]];
+            for [first, second] in pairs.map(|ids| ids.map(|id| limn_mesh::scheme(id).unwrap())) {
+                for level in 1..=4 {
+                    let mut plan = Plan::new(first, Boundary::EdgeOnly, level);
+                    plan.rules.face_varying = FaceVarying::None;
+                    plan.later = vec![Run { from: 2, scheme: second, params: Params::default() }];
+                    let refined = refine(&mesh, &plan, u64::MAX).unwrap();
+                    let what = format!("{name}, {} then {}, level {level}", first.info.id, second.info.id);
+                    for (c, &v) in refined.faces.corners().iter().enumerate() {
+                        let (uv, p) = (corner_uv(&refined, c), refined.points[v as usize]);
+                        let off = (uv[0] - p[0]).abs().max((uv[1] - p[1]).abs());
+                        assert!(off < 4e-6, "{what}: {uv:?} at {p:?}");
+                    }
+                    // Where textures fit, they stay one.
+                    assert_eq!(refined.uv.as_ref().unwrap().values.len(), refined.points.len(), "{what}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 500, "{compared}");
+}
+
+/// Creases that cross a seam, and lie on it: every face keeps its chart, and what fits goes on fitting.
+#[test]
+fn creases_and_seams() {
+    let mut soup = triangulate_soup(&grid(8, 5, 4, 10.0)).0;
+    let at = |x: u32, y: u32| x * 6 + y;
+    for chain in [
+        (0..8).map(|x| [at(x, 2), at(x + 1, 2)]).collect::<Vec<_>>(),
+        (0..5).map(|y| [at(4, y), at(4, y + 1)]).collect(),
+        (1..3).map(|y| [at(4, y), at(4, y + 1)]).chain([[at(3, 3), at(4, 3)]]).collect(),
+    ] {
+        soup.marks.creases = chain.into_iter().map(|ends| (ends, 10.0)).collect();
+        let mesh = build(&soup);
+        for (id, level) in ["sqrt3", "interpolating-sqrt3"].into_iter().flat_map(|id| (1..=4).map(move |l| (id, l))) {
+            let what = format!("{id}, level {level}");
+            let mut plan = Plan::new(limn_mesh::scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
+            plan.rules.face_varying = FaceVarying::Boundaries;
+            let refined = refine(&mesh, &plan, u64::MAX).unwrap();
+            assert!(is_whole(&refined, &[], 2), "{what}");
+            let seams =
+                fits(&what, &refined, |a, b| ((a[0] - b[0]).abs() - 10.0).abs() < 1e-4 && (a[1] - b[1]).abs() < 1e-4);
+            assert!(seams >= 5, "{what}: {seams}");
+            for f in 0..refined.faces.count() {
+                let chart: Vec<Uv> = refined.faces.range(f).map(|c| corner_uv(&refined, c)).collect();
+                let side = chart.iter().filter(|p| p[0] > 9.0).count();
+                assert!(side == 0 || side == 3, "{what}: {chart:?}");
+            }
+        }
+    }
+}
+
 /// Colours that are the points are refined as the points are.
 #[test]
 fn colours_are_points() {

@@ -229,7 +229,7 @@ fn plans_know_what_they_ignore() {
     assert_eq!(first("linear"), None);
     assert_eq!(first("doo-sabin"), Some("doo-sabin"));
     assert_eq!(first("kobbelt"), None);
-    // What is semi-sharp means nothing where edges are turned; what lasts does, but for texture coordinates.
+    // What is semi-sharp means nothing where edges are turned; what lasts does.
     let mut soup = triangulate_soup(&(shape("cube").unwrap().build)()).0;
     soup.marks.creases.push(([soup.face(0)[0], soup.face(0)[1]], 10.0));
     let turned = Plan::new(scheme("sqrt3").unwrap(), Boundary::default(), 2);
@@ -238,10 +238,6 @@ fn plans_know_what_they_ignore() {
     semi.marks.creases[0].1 = 2.0;
     let honours = turned.ignores_marks(&build(&semi)).unwrap().1;
     assert!(honours.creases && !honours.semi_sharp && honours.corners);
-    soup.uvs = soup.positions.iter().map(|p| [p[0], p[1]]).collect();
-    soup.uv_corners.clone_from(&soup.corners);
-    let honours = turned.ignores_marks(&build(&soup)).unwrap().1;
-    assert!(!honours.creases && honours.corners);
     let mut plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 2);
     plan.later = vec![Run { from: 1, scheme: scheme("doo-sabin").unwrap(), params: Params::default() }];
     assert_eq!(plan.ignores_marks(&mesh).map(|e| e.0.info.id), Some("doo-sabin"));

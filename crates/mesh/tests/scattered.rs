@@ -34,7 +34,11 @@ fn sheet() -> Soup {
 /// The same polygons with vertices and faces in no order; `vertex` and `face` say which is which now.
 fn scatter(soup: &Soup) -> (Soup, impl Fn(u32) -> u32, impl Fn(u32) -> u32) {
     // Numbers prime to the counts: steps that reach everything.
-    let step = |n: usize| (n as u64 * 619 / 1000..).find(|s| (2..=*s).all(|d| s % d > 0 || n as u64 % d > 0)).unwrap();
+    let step = |n: usize| {
+        (n as u64 * 619 / 1000..)
+            .find(|s| (2..=*s).all(|d| !s.is_multiple_of(d) || !(n as u64).is_multiple_of(d)))
+            .unwrap()
+    };
     let (vertices, faces) = (soup.positions.len() as u64, soup.face_count() as u64);
     let (by, jump) = (step(soup.positions.len()), step(soup.face_count()));
     let vertex = move |v: u32| (u64::from(v) * by % vertices) as u32;

@@ -28,10 +28,13 @@
 //! From the second step on mid-edge, whose faces meet in points, may pinch a chart apart there; then textures
 //! do not fit along the pinch, though every face still lies in its chart.
 
+mod creased;
 mod dual;
 mod mid_edge;
 mod sqrt3;
 
+use self::creased::Creased;
+use crate::crease::Creases;
 use crate::face_varying::{self, Sharp};
 use crate::plan::Step;
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags};
@@ -234,76 +237,65 @@ pub(crate) fn counts(step: &Step, uv: Counts, mesh: Counts) -> Option<Counts> {
     Some(Counts { vertices: mesh.corners, edges: mesh.corners, boundary: mesh.corners, ..mesh })
 }
 
-/// Takes texture coordinates through `step`, whose split leaves faces: `g` are the level's half-edges, `old` its channel. Says
-/// also how many rows that were.
+/// Takes texture coordinates through `step`, whose split leaves faces: `g` are the level's half-edges, `old` its channel,
+/// `creases` how sharp the two are. Says also how many rows that were.
 pub(crate) fn carry(
     g: &Topology,
     old: &Channel,
-    knots: &[f32],
+    (knots, [creases, own]): (&[f32], [Option<&Creases>; 2]),
     (step, at): (&Step, u32),
     rules: Rules,
 ) -> (Channel, usize) {
-    let (u, split) = (&old.topology, step.split);
-    let charts = Charts::new(g, u);
+    let split = step.split;
+    let creases = creases.filter(|_| matches!(split, Split::Sqrt3 { .. }) && step.scheme.honours.creases);
+    let creased = creases.map(|creases| Creased::new(g, old, creases));
+    let (seen, channel) = creased.as_ref().map_or((g, old), |c| (&c.g, &c.channel));
+    let charts = Charts::new(seen, &channel.topology);
     let lone = split.lone(g);
-    let (places, children) = match split {
-        Split::Sqrt3 { trisect } => {
-            let thirds = if trisect { g.boundary_half_edges() } else { 0 };
-            (charts.sqrt3(trisect), u.vertices() + g.faces() + thirds)
-        }
-        Split::MidEdge { cut, .. } => {
-            (charts.mid_edge(cut, &lone), split.children(u).max(u.edges() + lone.len() as u32))
-        }
-        _ => (charts.dual(&lone), g.half_edges() + lone.len() as u32),
+    let places = match split {
+        Split::Sqrt3 { trisect } => charts.sqrt3(trisect),
+        Split::MidEdge { cut, .. } => charts.mid_edge(cut, &lone),
+        _ => charts.dual(&lone),
     };
-
-    // The scheme's rows, of every child.
-    let mut images = vec![[0.0f32; 4]; children as usize];
-    let value = |v: u32| old.values[v as usize].map(f64::from);
-    let mut take = |child: u32, row: &[(Source, f64)], _| {
-        let sum = weigh(row, |s| match s {
-            Source::Vertex(v) => value(v),
-            Source::Child(v) => images[v as usize].map(f64::from),
-        });
-        images[child as usize] = sum.map(|x| x as f32);
-    };
-    let seen = charts.seen(matches!(split, Split::Dual { .. }));
     // In the dual split the rim's corners are cut or kept as the mesh's are; else they are among the pins.
     let boundary = if split.keeps_vertices() { Boundary::EdgeOnly } else { rules.boundary };
     let rules_seen = Rules { boundary, ..rules };
-    let tags = Tags { sharp: &old.pins, lone: &lone, knots, step: at, ..Tags::new(rules_seen, step.params) };
-    step.scheme.rows((&Level::Base(&seen), split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
-    if let Split::Sqrt3 { trisect } = split {
-        let linear = rules.face_varying == FaceVarying::All;
-        charts.straighten(old, trisect, linear, linear || step.scheme.info.interpolating, &mut images);
+    let tags = Tags { lone: &lone, knots, step: at, ..Tags::new(rules_seen, step.params) };
+    let mut images = charts.images(channel, step, tags);
+    if let Some(creased) = creased.as_ref().filter(|c| !c.darts.is_empty()) {
+        let whole = Charts::new(g, &old.topology).images(old, step, Tags { creases: own, ..tags });
+        creased.mend(&charts, split, &whole[..], old.topology.vertices(), &mut images);
     }
 
-    // The children's half-edges, cut where a side has other places on its other face.
-    let cut = split.cut(g, None);
-    debug_assert_eq!(places.len(), cut.corners.len());
-    let child = cut.connect(g, split, split.children(g), None);
-    let apart = |h: u32, t: u32| {
-        places[h as usize] != places[child.next(t) as usize] || places[child.next(h) as usize] != places[t as usize]
-    };
-    let mate = |h: u32| Some(child.twin(h)).filter(|&t| !is_boundary(t) && !apart(h, t)).unwrap_or(NONE);
-    let mates: Vec<u32> = (0..child.half_edges()).map(mate).collect();
-    let vertices = child.vertices() as usize;
-    let (topology, _) = Topology::assemble(cut.offsets, child.origins(), vertices, &mates);
-    let place = |v: u32| places[topology.vertex_half_edge(v) as usize];
+    let value = |v: u32| channel.values[v as usize].map(f64::from);
     let mix = |a: u32, b: u32, w: f64| {
         let (a, b) = (value(a), value(b));
         std::array::from_fn(|k| (w * a[k] + (1.0 - w) * b[k]) as f32)
     };
-    let values: Vec<[f32; 4]> = (0..topology.vertices())
-        .map(|v| match place(v) {
-            Place::Image(c) => images[c as usize],
-            Place::Point(c) => old.values[c as usize],
-            Place::Along(a, b) => mix(a, b, 0.75),
-            Place::Middle(a, b) => mix(a, b, 0.5),
-        })
-        .collect();
+    let find = |place: Place| match place {
+        Place::Image(c) => images[c as usize],
+        Place::Point(c) => channel.values[c as usize],
+        Place::Along(a, b) => mix(a, b, 0.75),
+        Place::Middle(a, b) => mix(a, b, 0.5),
+    };
+    // The children's half-edges, cut where a side has other places on its other face. What a crease cut is one again.
+    let cut = split.cut(g, creases);
+    debug_assert_eq!(places.len(), cut.corners.len());
+    let child = cut.connect(g, split, split.children(g), creases);
+    let same = |a: u32, b: u32| {
+        let (a, b) = (places[a as usize], places[b as usize]);
+        a == b || creases.is_some() && find(a) == find(b)
+    };
+    let joined = |h: u32, t: u32| same(h, child.next(t)) && same(child.next(h), t);
+    let mate = |h: u32| Some(child.twin(h)).filter(|&t| !is_boundary(t) && joined(h, t)).unwrap_or(NONE);
+    let mates: Vec<u32> = (0..child.half_edges()).map(mate).collect();
+    let vertices = child.vertices() as usize;
+    let (topology, _) = Topology::assemble(cut.offsets, child.origins(), vertices, &mates);
+    let place = |v: u32| places[topology.vertex_half_edge(v) as usize];
+    let values: Vec<[f32; 4]> = (0..topology.vertices()).map(|v| find(place(v))).collect();
     let pins = if split.keeps_vertices() {
-        let stays = |v| matches!(place(v), Place::Image(c) if old.pins.get(c as usize).is_some_and(|&p| p));
+        let before = |c: u32| creased.as_ref().map_or(c, |cut| cut.source.get(c as usize).copied().unwrap_or(NONE));
+        let stays = |v| matches!(place(v), Place::Image(c) if old.pins.get(before(c) as usize).is_some_and(|&p| p));
         (0..topology.vertices()).map(stays).collect()
     } else {
         // Vertices are new: what stays is told by the regions that meet there.
@@ -315,6 +307,37 @@ pub(crate) fn carry(
 }
 
 impl Charts<'_> {
+    /// What the scheme's rows make of every child.
+    fn images(&self, old: &Channel, step: &Step, tags: Tags<'_>) -> Vec<[f32; 4]> {
+        let (split, children) = (step.split, self.children(step.split, tags.lone));
+        let mut images = vec![[0.0f32; 4]; children as usize];
+        let mut take = |child: u32, row: &[(Source, f64)], _| {
+            let sum = weigh(row, |s| match s {
+                Source::Vertex(v) => old.values[v as usize].map(f64::from),
+                Source::Child(v) => images[v as usize].map(f64::from),
+            });
+            images[child as usize] = sum.map(|x| x as f32);
+        };
+        let seen = self.seen(matches!(split, Split::Dual { .. }));
+        let tags = Tags { sharp: &old.pins, ..tags };
+        step.scheme.rows((&Level::Base(&seen), split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
+        if let Split::Sqrt3 { trisect } = split {
+            let linear = tags.rules.face_varying == FaceVarying::All;
+            self.straighten(old, trisect, linear, linear || step.scheme.info.interpolating, &mut images);
+        }
+        images
+    }
+
+    /// How many children rows can name.
+    fn children(&self, split: Split, lone: &[u32]) -> u32 {
+        let (g, u) = (self.g, self.u);
+        match split {
+            Split::Sqrt3 { trisect } => u.vertices() + g.faces() + if trisect { g.boundary_half_edges() } else { 0 },
+            Split::MidEdge { .. } => split.children(u).max(u.edges() + lone.len() as u32),
+            _ => g.half_edges() + lone.len() as u32,
+        }
+    }
+
     /// Puts the vertices of the sqrt3 split that lie on seams on a smooth curve, the rule of which halves edges (of an
     /// `interpolating` scheme they stay); with `linear` rules all stay, and centres are centroids.
     fn straighten(&self, old: &Channel, trisect: bool, linear: bool, interpolating: bool, images: &mut [[f32; 4]]) {

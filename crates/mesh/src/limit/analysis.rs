@@ -24,11 +24,11 @@ use super::Mask;
 use super::eigen::{self, Rows, back};
 use super::patch::{Anchor, Patch, Seen};
 use crate::marks::INFINITE;
+use crate::owned::Owned;
 use crate::scheme::{Entry, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split, on};
 use crate::topology::{Connectivity, is_boundary};
-use crate::track::Owned;
 use std::f64::consts::PI;
 
 /// How many refinements a neighbourhood may take until it looks like its parent.
