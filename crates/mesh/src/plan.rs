@@ -20,7 +20,6 @@ use crate::refine::{Kept, RefineError};
 use crate::scheme::{Accepts, Boundary, Entry, Honours, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
 use crate::topology::Connectivity;
-use crate::weld::bounds;
 
 /// What to refine by, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +57,7 @@ pub(crate) struct Step {
     pub scheme: &'static Entry,
     pub params: [f64; MOST_PARAMS],
     pub split: Split,
-    /// The diagonal of the mesh, for schemes that ask for it.
+    /// The mean length of the mesh's edges, for schemes that ask for it.
     pub size: f64,
     /// Whether the level that it begins with must have its half-edges stored in full.
     pub stored: bool,
@@ -127,7 +126,7 @@ impl Plan {
     pub(crate) fn walk<'p>(&'p self, mesh: &'p Mesh) -> impl Iterator<Item = Result<Step, RefineError>> + 'p {
         let mut shape = mesh.face_shape();
         let random = self.scheme.info.is_random() || self.later.iter().any(|run| run.scheme.info.is_random());
-        let size = if random { diagonal(mesh) } else { 0.0 };
+        let size = if FULL && random { mean_edge(mesh) } else { 0.0 };
         let (mut held, mut uncounted) = (Held::Full, false);
         (0..self.level).map(move |step| {
             let run = self.run(step);
@@ -217,9 +216,13 @@ impl Plan {
     }
 }
 
-/// The diagonal of the bounding box of a mesh.
-fn diagonal(mesh: &Mesh) -> f64 {
-    let [low, high] = bounds(&mesh.positions);
-    let side = |k: usize| f64::from(high[k]) - f64::from(low[k]);
-    (side(0) * side(0) + side(1) * side(1) + side(2) * side(2)).sqrt()
+/// The mean length of a mesh's edges.
+fn mean_edge(mesh: &Mesh) -> f64 {
+    let t = &mesh.topology;
+    let length = |e: u32| {
+        let h = t.edge_half_edge(e);
+        let [p, q] = [h, t.next(h)].map(|h| mesh.positions[t.origin(h) as usize].map(f64::from));
+        (0..3).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum::<f64>().sqrt()
+    };
+    (0..t.edges()).map(length).sum::<f64>() / f64::from(t.edges())
 }

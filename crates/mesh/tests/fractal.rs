@@ -4,6 +4,7 @@ mod common;
 
 use common::{build, gallery};
 use limn_mesh::refine::evaluate;
+use limn_mesh::topology::is_boundary;
 use limn_mesh::{Boundary, Connectivity, Mesh, Params, Plan, RefineError, Split, refine, scheme, triangulate_soup};
 
 type Point = [f64; 3];
@@ -76,8 +77,14 @@ fn new_points_of_inner_edges_and_faces_are_moved() {
         if mesh.face_shape() == limn_mesh::FaceShape::Triangles {
             continue;
         }
-        let b = limn_mesh::bounds(&mesh.positions);
-        let size = (0..3).map(|k| (f64::from(b[1][k]) - f64::from(b[0][k])).powi(2)).sum::<f64>().sqrt();
+        // Inner edges are met from both sides.
+        let t = &mesh.topology;
+        let sides = (0..t.half_edges()).map(|h| {
+            let [p, q] = [h, t.next(h)].map(|h| mesh.positions[t.origin(h) as usize].map(f64::from));
+            let length = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+            if is_boundary(t.twin(h)) { length } else { length / 2.0 }
+        });
+        let size = sides.sum::<f64>() / f64::from(t.edges());
         let linear = Plan::new(scheme("linear").unwrap(), Boundary::EdgeOnly, 1);
         let mut parent = exact(&mesh);
         let mut moved = 0;
@@ -105,7 +112,7 @@ fn new_points_of_inner_edges_and_faces_are_moved() {
                 }
                 for e in 0..c.edges() {
                     let h = c.edge_half_edge(e);
-                    let rim = limn_mesh::topology::is_boundary(c.twin(h));
+                    let rim = is_boundary(c.twin(h));
                     moved += u32::from(!rim);
                     push(&mut points, middle(&[c.origin(h), c.origin(c.next(h))]), rim);
                 }
@@ -135,7 +142,7 @@ fn a_seed_is_a_surface() {
     assert_eq!(first.map(f32::to_bits), FIRST, "{first:?} {:x?}", first.map(f32::to_bits));
 }
 
-const FIRST: [u32; 3] = [0xbdc3_2884, 0xbca0_6f8c, 0xbf69_98ce];
+const FIRST: [u32; 3] = [0xbd61_596e, 0xbc39_4141, 0xbf61_f621];
 
 /// Displacement is even: no direction and no octant is preferred, and half of the ball's volume gets half of the vectors.
 #[test]

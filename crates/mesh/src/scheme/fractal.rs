@@ -2,7 +2,7 @@
 //! models", 1982): every new point is moved by a random vector, half as far at every level.
 //!
 //! ```text
-//!   p' = what the scheme says + amount D 2^-level r        D the diagonal of the mesh's bounding box
+//!   p' = what the scheme says + amount L 2^-level r        L the mean length of the mesh's edges
 //!        for points of inner edges and faces               r anywhere in the unit ball, from (seed, level, vertex)
 //! ```
 //!
@@ -50,8 +50,8 @@ const INFO: Info = Info {
         Param {
             key: "amount",
             name: "Amount",
-            summary: "How far new points move at the first level, in sizes of the mesh.",
-            domain: Domain::Number { low: 0.0, high: 0.5, default: 0.05 },
+            summary: "How far new points move at the first level, in lengths of the mesh's edges.",
+            domain: Domain::Number { low: 0.0, high: 1.0, default: 0.2 },
         },
     ],
 };

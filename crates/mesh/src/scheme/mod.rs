@@ -204,7 +204,7 @@ pub struct Tags<'a> {
     pub lone: &'a [u32],
     /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
     pub knots: &'a [f32],
-    /// The diagonal of the bounding box of level 0, where the scheme asks for it.
+    /// The mean length of the edges of level 0, where the scheme asks for it.
     pub size: f64,
     /// The scheme's parameters: [`Params::of`].
     pub params: [f64; MOST_PARAMS],
