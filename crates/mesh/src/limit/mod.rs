@@ -14,7 +14,7 @@
 //! ```
 //!
 //! [`Projector`] finds the mask of any vertex: in closed form for Catmull-Clark, Loop, sqrt3 and mid-edge with their boundaries
-//! and corners, by eigen-analysis of the scheme's own rows everywhere else. An interpolating scheme's vertices stay; a dual
+//! and corners and for Doo-Sabin inside, by eigen-analysis of the scheme's own rows everywhere else. An interpolating scheme's vertices stay; a dual
 //! scheme's, which cut themselves off at every step, go where the mean of their images does.
 //!
 //! Sources: M. Halstead, M. Kass, T. DeRose, "Efficient, fair interpolation using Catmull-Clark surfaces" (1993); C. Loop
@@ -24,6 +24,7 @@
 
 mod analysis;
 mod catmull_clark;
+mod doo_sabin;
 mod eigen;
 #[path = "loop.rs"]
 mod loop_;
@@ -52,6 +53,11 @@ pub enum LimitRule {
     Sqrt3,
     /// Mid-edge's masks.
     MidEdge,
+    /// Doo-Sabin's masks, or those of its midpoint variant.
+    DooSabin {
+        /// Which.
+        midpoint: bool,
+    },
     /// By eigen-analysis of what the scheme does around a vertex.
     Analysis,
     /// Vertices are where they are, and there are no tangents: the surface is that of the mesh.
@@ -338,6 +344,15 @@ impl<'a> Projector<'a> {
                 self.ring.read(c, c.vertex_half_edge(v), None);
                 mid_edge::mask(c, &self.ring, self.split, v, mask);
             }
+            LimitRule::DooSabin { midpoint } => {
+                self.ring.read(c, c.vertex_half_edge(v), None);
+                if self.ring.arriving.is_none() && self.ring.spokes.len() > 2 {
+                    doo_sabin::mask(c, &self.ring, midpoint, mask);
+                } else {
+                    let setting = Setting { scheme: self.scheme, split: self.split, tags };
+                    self.analysis.mask(c, setting, v, mask);
+                }
+            }
             LimitRule::Analysis => {
                 let setting = Setting { scheme: self.scheme, split: self.split, tags };
                 self.analysis.mask(c, setting, v, mask);
@@ -383,7 +398,8 @@ impl Projection {
 
     /// How many rows' time a vertex takes.
     pub fn cost(scheme: &Entry) -> u32 {
-        if scheme.limit == LimitRule::Analysis { 24 } else { 4 }
+        // Rims may be analysed.
+        if matches!(scheme.limit, LimitRule::Analysis | LimitRule::DooSabin { .. }) { 24 } else { 4 }
     }
 
     /// Works off up to `quota` rows of `at ..`, or up to the next new kind of neighbourhood, from `old` to `new` points; true

@@ -17,6 +17,7 @@
 //! those in the place of other faces and vertices, which stay as they are: C1. Cost: about 25 ns an output face.
 
 use super::{Accepts, Boundary, Family, Info, Scheme, Tags};
+use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
 use crate::topology::{Connectivity, is_boundary};
@@ -40,13 +41,10 @@ impl Scheme for DooSabin {
         params: &[],
     };
 
+    const LIMIT: LimitRule = LimitRule::DooSabin { midpoint: false };
+
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
-        images(c, tags, sink, |k, j| match (k, j) {
-            (k, 0) => 0.25 + 1.25 / k as f64,
-            (4, 2) => 0.0625,
-            (4, _) => 0.1875,
-            _ => (3.0 + 2.0 * libm::cos(2.0 * PI * j as f64 / k as f64)) / (4.0 * k as f64),
-        });
+        images(c, tags, sink, |k, j| weight(false, k, j));
     }
 }
 
@@ -67,19 +65,24 @@ impl Scheme for Midpoint {
         params: &[],
     };
 
+    const LIMIT: LimitRule = LimitRule::DooSabin { midpoint: true };
+
     fn rules<C: Connectivity, K: Sink>(c: &C, _: Split, tags: Tags<'_>, sink: &mut K) {
-        images(c, tags, sink, |k, j| {
-            let centroid = 0.25 / k as f64;
-            // The corner counts once, and half in each midpoint.
-            centroid
-                + if j == 0 {
-                    0.5
-                } else if j == 1 || j + 1 == k {
-                    0.125
-                } else {
-                    0.0
-                }
-        });
+        images(c, tags, sink, |k, j| weight(true, k, j));
+    }
+}
+
+/// The weight of the corner `j` places on in a face of `k` in the image of a corner.
+pub(crate) fn weight(midpoint: bool, k: usize, j: usize) -> f64 {
+    match (k, j) {
+        // The corner counts once, and half in each midpoint.
+        (_, 0) if midpoint => 0.5 + 0.25 / k as f64,
+        _ if midpoint && (j == 1 || j + 1 == k) => 0.125 + 0.25 / k as f64,
+        _ if midpoint => 0.25 / k as f64,
+        (k, 0) => 0.25 + 1.25 / k as f64,
+        (4, 2) => 0.0625,
+        (4, _) => 0.1875,
+        _ => (3.0 + 2.0 * libm::cos(2.0 * PI * j as f64 / k as f64)) / (4.0 * k as f64),
     }
 }
 

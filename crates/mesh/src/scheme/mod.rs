@@ -50,6 +50,7 @@ pub use rules::{Boundary, Decay, FaceVarying, Rules, TriangleRule};
 pub use sqrt3::Sqrt3;
 pub use tri_to_quad::TriToQuad;
 
+pub(crate) use doo_sabin::weight as doo_sabin_weight;
 pub(crate) use loop_::weight as loop_weight;
 
 use crate::FULL;
