@@ -257,10 +257,13 @@ fn main() {
     let quads = shape("creature").map(|s| (s.build)()).unwrap_or_default();
     let (triangles, _) = triangulate_soup(&quads);
     let torus = meshes::torus(64, 64);
-    let shuffled = meshes::shuffled(&meshes::torus(256, 256));
+    let (wide, wide_rings) = (meshes::torus(256, 256), meshes::rings(256, 256));
+    let shuffled = meshes::shuffled(&wide);
     let mixed = meshes::mixed(256, 256);
     let sphere = meshes::sphere(112);
     table.creases("catmull-clark", "torus 64x64", &torus, meshes::rings(64, 64), 4);
+    // At low levels a larger part of the vertices lies on creases.
+    table.creases("catmull-clark", "torus 256x256", &wide, wide_rings.clone(), 2);
     table.row("catmull-clark", "torus 256x256 shuffled", &shuffled, 3);
     table.row("catmull-clark", "mixed polygons", &mixed, 2);
     table.row("catmull-clark", "creature", &quads, 5);
@@ -270,6 +273,7 @@ fn main() {
     table.row("loop", "sphere, triangles", &sphere, 2);
     let triangulated = meshes::torus_triangles(64, 64);
     table.creases("loop", "torus, triangles", &triangulated, meshes::rings(64, 64), 4);
+    table.creases("loop", "triangles 256x256", &meshes::torus_triangles(256, 256), wide_rings, 2);
     table.row("loop", "creature, triangles", &triangles, 4);
     table.row("sqrt3", "sphere, triangles", &sphere, 3);
     table.row("sqrt3", "creature, triangles", &triangles, 5);

@@ -21,8 +21,8 @@ pub fn float_key(x: f64) -> u64 {
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
-/// Sorts rows of (key, number), upwards. By a heap (J. Williams 1964): a third the speed of [`sort_keys`], and a twentieth
-/// the machine code of a second sort of that kind.
+/// Sorts rows of (key, number), upwards. By a heap (J. Williams 1964): a tenth of the machine code of a second sort like
+/// [`sort_keys`], and four times its time on a thousand rows in no order, eight times on a hundred thousand.
 #[inline(never)]
 pub fn sort(rows: &mut [(u64, u32)]) {
     let count = rows.len();

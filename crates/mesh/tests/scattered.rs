@@ -144,3 +144,50 @@ fn scattered_faces_are_put_in_order_and_keep_their_names() {
         }
     }
 }
+
+/// Faces of any vertices, with repeats, stray positions and edges of many faces: as many as are put in order.
+#[test]
+fn rubble_is_put_in_order_whatever_it_holds() {
+    let mut state = 1u64;
+    let mut below = |n: u32| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) % u64::from(n)) as u32
+    };
+    let positions: Vec<[f32; 3]> = (0..3000).map(|_| [0; 3].map(|_: u8| below(50) as f32)).collect();
+    let faces: Vec<Vec<u32>> = (0..5000)
+        .map(|_| {
+            let (count, near) = (1 + below(6), below(2900));
+            (0..count).map(|_| near + below(90)).collect()
+        })
+        .collect();
+    let mut soup = Soup::from_faces(positions, &faces);
+    soup.uvs = (0..40).map(|i| [i as f32, 0.5]).collect();
+    soup.uv_corners = (0..soup.corners.len()).map(|i| if i % 13 == 0 { NONE } else { i as u32 % 40 }).collect();
+    for weld in [Weld::Off, Weld::Exact] {
+        let (mesh, report) = Mesh::build(&soup, weld).unwrap();
+        validate(&mesh.topology).unwrap();
+        validate(&mesh.uv.as_ref().unwrap().topology).unwrap();
+        assert!(!mesh.face_source.is_sorted());
+        let mut seen = vec![false; soup.face_count()];
+        for f in 0..mesh.topology.faces() {
+            let source = mesh.face_source[f as usize] as usize;
+            assert!(!std::mem::replace(&mut seen[source], true), "face {source} is there once");
+            let mut whole: Vec<u32> = soup.face(source).iter().map(|&v| mesh.weld_class[v as usize]).collect();
+            let corners = mesh.topology.face_half_edges(f).map(|h| mesh.topology.origin(h));
+            let mut classes: Vec<u32> = corners.clone().map(|v| mesh.vertex_source[v as usize]).collect();
+            assert!(corners.zip(&classes).all(|(v, &c)| mesh.positions[v as usize] == soup.positions[c as usize]));
+            // Repeated corners and spikes may have gone.
+            whole.sort_unstable();
+            classes.sort_unstable();
+            if classes.len() == whole.len() {
+                assert_eq!(classes, whole, "face {source}");
+            } else {
+                assert!(classes.iter().all(|c| whole.contains(c)), "face {source}");
+            }
+        }
+        // The lowest of each kind is named first.
+        let left_out = seen.iter().position(|seen| !seen).unwrap();
+        let said: Vec<String> = report.notes.iter().map(ToString::to_string).collect();
+        assert!(said.iter().any(|s| s.contains(&format!("(first: {left_out}) left out"))), "{said:?}");
+    }
+}
