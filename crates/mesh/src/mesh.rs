@@ -7,13 +7,15 @@
 //! Nothing that a polygon soup can hold is refused but indices that do not exist, coordinates that are not finite numbers,
 //! and no face at all. An edge with more than two faces is cut apart into boundaries; the copies of its vertices refine by
 //! the boundary curve rule, which reads the same two neighbours on every sheet, so they stay equal to the last bit; so does
-//! one that is a sheet's only face there (`joined`). Where that does not hold (ends of the cut, fans that meet in a point only)
-//! the copies are tagged sharp: every scheme keeps them. That is OpenSubdiv's rule, but for a vertex inside a cut where a whole
-//! fan touches in a point as well, which it lets go. Cost: linear in corners, about 60 ns each. Source of the invariants:
+//! one that is a sheet's only face there (`joined`). A whole fan that touches inside a cut goes with the cut (`tied`). Where
+//! that does not hold (ends of the cut, fans that meet in a point only) the copies are tagged sharp: every scheme keeps
+//! them. That is OpenSubdiv's rule. Cost: linear in corners, about 60 ns each. Source of the invariants:
 //! [`crate::topology`].
 
+use crate::FULL;
 use crate::connect::{self, Matching};
 use crate::marks;
+use crate::plan::Step;
 use crate::report::{Note, Report};
 use crate::scattered;
 use crate::soup::{NONE, Soup};
@@ -37,6 +39,8 @@ pub struct Mesh {
     /// Vertices of one face that are no corners, whatever the boundary rule: both edges were cut from other faces, and the
     /// other copies follow the curve. Empty if there are none.
     pub joined: Vec<bool>,
+    /// Copies inside a cut that have no boundary, each with the copy whose place it takes at every level.
+    pub tied: Vec<[u32; 2]>,
     /// The sharpness of each edge, 0 smooth, from [`crate::marks::INFINITE`] on for ever; empty if all are smooth.
     pub edge_sharpness: Vec<f32>,
     /// The sharpness of each vertex; empty if all are smooth.
@@ -159,7 +163,7 @@ impl Mesh {
                 numbers.iter_mut().for_each(|v| *v = class[*v as usize]);
             }
         }
-        let (sharp, joined, split) = tie(&topology, &vertex_source, soup.positions.len());
+        let Ties { sharp, joined, tied, split } = tie(&topology, &vertex_source, soup.positions.len());
         report(&mut notes, &m, &faces, split);
         let marks::Resolved { edge_sharpness, vertex_sharpness, holes, knots } =
             marks::resolve(&soup.marks, &topology, &weld_class, &vertex_source, &faces.source, &mut notes);
@@ -185,6 +189,7 @@ impl Mesh {
             uv,
             sharp,
             joined,
+            tied,
             edge_sharpness,
             vertex_sharpness,
             holes,
@@ -197,6 +202,13 @@ impl Mesh {
             shape,
         };
         Ok((mesh, Report { notes }))
+    }
+
+    /// Puts what is tied in its place on a level, as long as all `steps` up to there keep vertices.
+    pub(crate) fn tie<T: Copy>(&self, steps: &[Step], level: u32, values: &mut [T]) {
+        if FULL && steps.iter().take(level as usize).all(|s| s.split.keeps_vertices()) {
+            self.tied.iter().for_each(|&[v, leader]| values[v as usize] = values[leader as usize]);
+        }
     }
 
     /// Counts of level 0.
@@ -391,22 +403,32 @@ fn count(tally: &mut (u64, u32), f: usize) {
     tally.0 += 1;
 }
 
-/// Finds which copies of split vertices must be sharp to stay together, which may not be corners, and how many positions were
-/// split.
-fn tie(t: &Topology, source: &[u32], positions: usize) -> (Vec<bool>, Vec<bool>, (u64, u32)) {
+/// What keeps copies of split vertices together: those that must be sharp, may not be corners, and take the place of others;
+/// and how many positions were split.
+#[derive(Default)]
+struct Ties {
+    sharp: Vec<bool>,
+    joined: Vec<bool>,
+    tied: Vec<[u32; 2]>,
+    split: (u64, u32),
+}
+
+fn tie(t: &Topology, source: &[u32], positions: usize) -> Ties {
     let mut copies = vec![0u8; positions];
     for &s in source {
         copies[s as usize] = copies[s as usize].saturating_add(1);
     }
     let split = copies.iter().filter(|&&c| c > 1).count() as u64;
     if split == 0 {
-        return (Vec::new(), Vec::new(), (0, 0));
+        return Ties::default();
     }
     let first = copies.iter().position(|&c| c > 1).unwrap_or(0) as u32;
     // A copy's boundary neighbours, smaller source first; NONE twice where there are none.
     let mut seen: Vec<Option<[u32; 2]>> = vec![None; positions];
     let mut apart = vec![false; positions];
     let mut lone = vec![false; source.len()];
+    // The copies with a boundary, up to three, and the last of them; and those without.
+    let (mut sheets, mut last, mut closed) = (vec![0u8; positions], vec![NONE; positions], Vec::new());
     for (v, &s) in source.iter().enumerate().filter(|(_, s)| copies[**s as usize] > 1) {
         let mut faces = 0;
         let mut pair = [NONE; 2];
@@ -416,12 +438,23 @@ fn tie(t: &Topology, source: &[u32], positions: usize) -> (Vec<bool>, Vec<bool>,
             pair = [a.min(b), a.max(b)];
             lone[v] = faces == 1;
         }
+        if pair == [NONE; 2] {
+            closed.push(v as u32);
+            continue;
+        }
         let known = *seen[s as usize].get_or_insert(pair);
-        apart[s as usize] |= pair == [NONE; 2] || known != pair;
+        apart[s as usize] |= known != pair;
+        sheets[s as usize] = (sheets[s as usize] + 1).min(3);
+        last[s as usize] = v as u32;
     }
+    // On a rim, or without any, they meet in a point only.
+    closed.iter().map(|&v| source[v as usize] as usize).for_each(|s| apart[s] |= sheets[s] < 3);
+    let leader = |&v: &u32| [v, last[source[v as usize] as usize]];
+    let tied = closed.iter().map(leader).filter(|t| !apart[source[t[0] as usize] as usize]).collect();
     lone.iter_mut().zip(source).for_each(|(lone, &s)| *lone &= !apart[s as usize]);
     let joined = if lone.contains(&true) { lone } else { Vec::new() };
-    (source.iter().map(|&s| apart[s as usize]).collect(), joined, (split, first))
+    let sharp = source.iter().map(|&s| apart[s as usize]).collect();
+    Ties { sharp, joined, tied, split: (split, first) }
 }
 
 fn report(notes: &mut Vec<Note>, m: &Matching, faces: &Faces, split: (u64, u32)) {

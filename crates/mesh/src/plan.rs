@@ -95,14 +95,14 @@ impl Plan {
         FULL || self.is_common(mesh)
     }
 
-    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, holes, colours
-    /// and texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
+    /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, holes, ties,
+    /// colours and texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
     /// place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
         let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
         let plain = self.scheme.common && self.later.is_empty();
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
-        let bare = mesh.colors.is_empty() && mesh.uv.is_none();
+        let bare = mesh.colors.is_empty() && mesh.uv.is_none() && mesh.tied.is_empty();
         let shown = mesh.holes.is_empty() && self.rules.boundary != Boundary::None;
         closed && shown && (self.level == 0 || (plain && smooth && bare))
     }

@@ -399,6 +399,7 @@ pub fn evaluate_limit(mesh: &Mesh, plan: &Plan, points: &[[f64; 3]]) -> Result<L
     let plan = Plan { limit: false, ..plan.clone() };
     let beyond = plan.beyond(mesh)?;
     run(mesh, &plan, points, |_, _| (), beyond, |scheme, on, points| found = limit(scheme, on, points))?;
+    mesh.tie(&admit(mesh, &plan, u64::MAX)?, plan.level, &mut found.points);
     Ok(found)
 }
 
@@ -429,6 +430,7 @@ fn run<const N: usize>(
                 let mut take = |v: u32, row: &[(Source, f64)], _| new[v as usize] = weigh(row, |s| of(&old, &[], s));
                 let (mut cursor, mut quota) = (Cursor::default(), usize::MAX);
                 fairing::rules(&level, pass, tags, &mut Record::new(&mut take, &mut cursor, &mut quota));
+                mesh.tie(&steps, at, &mut new);
                 old = new;
             }
         }
@@ -436,6 +438,7 @@ fn run<const N: usize>(
             if let Some(step) = &beyond {
                 let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
                 last(step.scheme, (&level, step.split, tags), &mut old);
+                mesh.tie(&steps, at, &mut old);
             }
             break;
         };
@@ -452,6 +455,7 @@ fn run<const N: usize>(
             new[child as usize] = sum;
         };
         step.scheme.rows((&level, split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
+        mesh.tie(&steps, at + 1, &mut new);
         old = new;
         let next = steps.get(at as usize + 1);
         if next.is_some() || plan.closes() || beyond.is_some() {

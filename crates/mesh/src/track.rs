@@ -291,6 +291,7 @@ impl Track {
             let mut sink = Eval::new(old, &mut self.new_points, cursor, quota);
             fairing::rules(level, *pass, tags, &mut sink);
             if sink.done() {
+                mesh.tie(steps, self.level, &mut self.new_points);
                 std::mem::swap(old, &mut self.new_points);
                 (*pass, *cursor) = (*pass + 1, Cursor::default());
                 if *pass == plan.fairing(self.level).map_or(0, |f| f.passes()) {
@@ -306,6 +307,7 @@ impl Track {
             let knots = if self.level == 0 { &mesh.knots } else { &self.knots };
             let tags = Tags { knots, ..plan.tags(limit.step(), self.level, sharp, self.creases.as_ref()) };
             if limit.work((level, tags), old, &mut self.new_points, at, quota) {
+                mesh.tie(steps, self.level, &mut self.new_points);
                 std::mem::swap(old, &mut self.new_points);
                 self.stage = Stage::Done;
             }
@@ -331,6 +333,7 @@ impl Track {
                 zeroed(&mut self.new_points, children);
                 let old = self.points.as_deref().unwrap_or(&mesh.positions);
                 if at.scheme.eval((level, split, tags), old, &mut self.new_points, cursor, quota) {
+                    mesh.tie(steps, self.level + 1, &mut self.new_points);
                     self.stage = Stage::Wide(Cursor::default());
                 }
             }
@@ -351,6 +354,9 @@ impl Track {
                     done = scheme.rows((level, split, tags), &mut take, cursor, quota);
                 }
                 if done {
+                    if FULL && !self.uv && !self.new_wide.is_empty() {
+                        mesh.tie(steps, self.level + 1, &mut self.new_wide);
+                    }
                     self.stage = if last { Stage::Corners(0) } else { Stage::HalfEdges(0) };
                 }
             }

@@ -34,6 +34,7 @@ impl Mesh {
             uv,
             sharp,
             joined,
+            tied,
             edge_sharpness,
             vertex_sharpness,
             holes,
@@ -57,6 +58,7 @@ impl Mesh {
         }
         out.flags(sharp);
         out.flags(joined);
+        out.array(tied);
         for array in [edge_sharpness, vertex_sharpness, knots] {
             out.array(array);
         }
@@ -90,6 +92,7 @@ impl Mesh {
             },
             sharp: from.flags()?,
             joined: from.flags()?,
+            tied: from.array()?,
             edge_sharpness: from.array()?,
             vertex_sharpness: from.array()?,
             knots: from.array()?,

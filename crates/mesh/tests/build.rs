@@ -229,3 +229,50 @@ fn marks_find_their_places() {
     let sharp = |s: f32| mesh.edge_sharpness.iter().filter(|&&x| x == s).count();
     assert_eq!((sharp(3.0), sharp(2.0)), (1, 3), "one edge of a page, and the spine on each of three pages");
 }
+
+/// Three sheets on a line, and a closed fan that touches them in a point of it: the fan's vertex goes where the cut's curve goes,
+/// as OpenSubdiv has it, at every level and in the limit. A fan at an end of the line keeps all there.
+#[test]
+fn a_fan_that_touches_a_cut_goes_with_it() {
+    let mut positions: Vec<[f32; 3]> = [0.0, 1.0, 1.2, 3.0].map(|z| [0.2 * z * z, 0.0, z]).to_vec();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for (x, y) in [(1.0, 0.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        let first = positions.len() as u32;
+        positions.extend([0.0, 1.0, 2.0, 3.0].map(|z| [x, y, z]));
+        faces.extend((0..3).map(|k| vec![k, k + 1, first + k + 1, first + k]));
+    }
+    let touching = |at: u32, positions: &mut Vec<[f32; 3]>| {
+        let first = positions.len() as u32;
+        positions.extend([[0.3, 0.2, 4.0], [0.6, 0.1, 4.0], [0.5, 0.4, 4.2]]);
+        (0..3).map(|i| vec![at, first + i, first + (i + 1) % 3]).collect::<Vec<_>>()
+    };
+    for (at, moves) in [(1u32, true), (0, false)] {
+        let mut positions = positions.clone();
+        let fan = touching(at, &mut positions);
+        let soup = Soup::from_faces(positions.clone(), &[&faces[..], &fan[..]].concat());
+        for soup in [soup.clone(), limn_mesh::triangulate_soup(&soup).0] {
+            let mesh = common::build(&soup);
+            let copies: Vec<usize> = (0..mesh.positions.len()).filter(|&v| mesh.vertex_source[v] == at).collect();
+            assert_eq!((copies.len(), mesh.tied.len()), (4, usize::from(moves)));
+            for scheme in SCHEMES.iter().filter(|s| !["dual", "linear"].contains(&s.info.group) && !s.info.is_random())
+            {
+                for (level, limit) in [(1, false), (2, true), (3, false)] {
+                    let plan =
+                        limn_mesh::Plan { limit, ..limn_mesh::Plan::new(scheme, limn_mesh::Boundary::EdgeOnly, level) };
+                    let Ok(refined) = limn_mesh::refine(&mesh, &plan, u64::MAX) else { continue };
+                    let place = |v: usize| refined.points[v].map(f32::to_bits);
+                    assert!(copies.iter().all(|&v| place(v) == place(copies[0])), "{}, level {level}", scheme.info.id);
+                }
+            }
+            for (id, level) in [("catmull-clark", 1), ("loop", 1)] {
+                let plan = limn_mesh::Plan::new(limn_mesh::scheme(id).unwrap(), limn_mesh::Boundary::EdgeOnly, level);
+                let Ok(refined) = limn_mesh::refine(&mesh, &plan, u64::MAX) else { continue };
+                let p = |v: u32, k: usize| positions[v as usize][k];
+                for (k, x) in refined.points[*copies.last().unwrap()].iter().enumerate() {
+                    let there = if moves { 0.75 * p(1, k) + 0.125 * (p(0, k) + p(2, k)) } else { p(0, k) };
+                    assert!((x - there).abs() < 1e-6, "{id}: {x} and {there}");
+                }
+            }
+        }
+    }
+}
