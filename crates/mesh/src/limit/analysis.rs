@@ -2,8 +2,8 @@
 //!
 //! A neighbourhood is cut out and refined, the scheme's rows are recorded, and the same neighbourhood of the child is cut
 //! out of that. As soon as parent and child look alike (the next extraordinary vertex is out of sight then) the rows
-//! between them are the local subdivision matrix S, whose left eigenvectors are the mask. The rows of the steps before take
-//! it back to the vertices that there are.
+//! between them are the local subdivision matrix S, whose left eigenvectors are the mask. (At rims of sqrt3 splits, which are
+//! cut in every second step, those of two steps.) The rows of the steps before take it back to the vertices that there are.
 //!
 //! ```text
 //!   patch 0 ── rows ──> patch 1 ── rows ──> patch 2 = patch 3       l S = l,   mask = l R1 R0
@@ -14,11 +14,12 @@
 //! middle of the edge between the first image and the last.
 //!
 //! Neighbourhoods that look alike share one analysis. How many rings of faces a scheme looks at is found out: with one more
-//! the answer must be the same. Cost: some 500 us for a new kind of neighbourhood, about 2 us for the next of that kind. Limit: sqrt3 splits that cut boundary edges (their masks near boundaries are closed forms); at a sharp
-//! vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
+//! the answer must be the same. Cost: some 500 us for a new kind of neighbourhood, about 2 us for the next of that
+//! kind. Limit: at a sharp vertex inside and at eigenvalues in Jordan blocks (a smooth corner of one quad) there is no tangent plane.
 //! Where a scheme is not smooth inside (the first butterfly at extraordinary valences) the plane is that of its greatest
 //! eigenvalues, which need not be the one that people see. At rims whose rules do not know their number of faces (J-splines from
-//! four on, the first butterfly from five) the greatest eigenvalue across may belong to a wave, to and fro: there is no plane.
+//! three on, the first butterfly from four, interpolating sqrt3 from six) the greatest eigenvalue across may belong to a wave, to
+//! and fro: there is no plane.
 
 use super::Mask;
 use super::eigen::{self, Rows, back};
@@ -121,11 +122,11 @@ impl Analysis {
     fn find(&mut self, level: &Level<'_>, setting: Setting<'_>, v: u32) -> Kind {
         let key = self.level.key.clone();
         self.made += 1;
-        let narrow = analyse(&self.level.patch(level), self.rings, setting, &mut self.child);
+        let narrow = analyse(&self.level.patch(level, setting.split), self.rings, setting, &mut self.child);
         let mut wide = Found::Nothing;
         if self.rings < WIDEST {
             self.look(level, setting, v, self.rings + 1);
-            wide = analyse(&self.level.patch(level), self.rings + 1, setting, &mut self.child);
+            wide = analyse(&self.level.patch(level, setting.split), self.rings + 1, setting, &mut self.child);
             self.look(level, setting, v, self.rings);
         }
         match (narrow, wide) {
@@ -167,33 +168,43 @@ impl Kind {
 
 /// The mask over the vertices of `first`, and what it was made of.
 fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, seen: &mut Seen) -> Found {
-    let (mut anchor, mut split) = (Anchor::Vertex(0), setting.split);
+    let (mut anchor, mut split, mut period) = (Anchor::Vertex(0), setting.split, 1);
     if let Split::Sqrt3 { .. } = split {
         let creased = |v: u32| first.creases.as_ref().is_some_and(|c| c.is_on_crease(v));
         let rim = |v: u32| creased(v) || is_boundary(first.topology.twin(first.topology.vertex_half_edge(v)));
         if (0..first.topology.vertices()).any(|v| first.rings[v as usize] < rings && rim(v)) {
-            return Found::Nothing;
+            period = 2;
+        } else {
+            split = Split::Sqrt3 { trisect: false };
         }
-        split = Split::Sqrt3 { trisect: false };
     }
     let mut patches: Vec<Patch> = Vec::new();
     let mut steps: Vec<Rows> = Vec::new();
     let mut stationary = false;
     for _ in 0..if first.creases.is_some() { FADING } else { DEPTH } {
-        let patch = patches.last().unwrap_or(first);
+        let at = |k: usize| k.checked_sub(1).map_or(first, |k| &patches[k]);
+        let patch = at(steps.len());
         let Some((next, child, rows)) = refine(patch, anchor, rings, Setting { split, ..setting }, seen) else {
             return Found::Nothing;
         };
         steps.push(rows);
-        let alike = child.key == patch.key;
+        let alike = steps.len().checked_sub(period).is_some_and(|k| child.key == at(k).key);
         patches.push(child);
         anchor = next;
+        if let (2, Split::Sqrt3 { trisect }) = (period, split) {
+            split = Split::Sqrt3 { trisect: !trisect };
+        }
         stationary = alike;
         if alike {
             break;
         }
     }
-    let (Some(patch), Some(s)) = (patches.last(), steps.pop()) else { return Found::Nothing };
+    let (Some(patch), Some(mut s)) = (patches.last(), steps.pop()) else { return Found::Nothing };
+    if stationary && period == 2 {
+        let Some(one) = steps.pop() else { return Found::Nothing };
+        let size = steps.len().checked_sub(1).map_or(first, |k| &patches[k]).vertices.len();
+        s = s.iter().map(|row| through(row, &one, size)).collect();
+    }
     let (point, tangents) = if stationary {
         match eigenvectors(patch, anchor, &s, rings, setting.scheme.info.interpolating) {
             Some((Some(point), tangents)) => (point, tangents),
@@ -220,6 +231,13 @@ fn analyse(first: &Patch, rings: u32, setting: Setting<'_>, seen: &mut Seen) -> 
         seen
     };
     Found::Kind(Kind { key: first.key.clone(), point: down(point), tangents: tangents.map(|t| t.map(down)) })
+}
+
+/// A row over vertices that `rows` make of `size` others, as one over those.
+fn through(row: &[(u32, f64)], rows: &Rows, size: usize) -> Vec<(u32, f64)> {
+    let mut weights = vec![0.0; rows.len()];
+    row.iter().for_each(|&(v, w)| weights[v as usize] += w);
+    (0..).zip(back(rows, &weights, size)).filter(|(_, w)| *w != 0.0).collect()
 }
 
 /// The limit point over the first `own` vertices, if they depend on each other only.
@@ -275,7 +293,7 @@ fn refine(
     let marks = patch.creases.as_ref();
     let marks = marks.and_then(|m| m.below(&level, setting.split, &child, setting.tags.rules.decay));
     seen.read(&child, next, rings, (sharp, &knots, marks.as_ref()));
-    let cut = seen.patch(&child);
+    let cut = seen.patch(&child, setting.split);
     let rows = cut.vertices.iter().map(|&v| rows[v as usize].clone()).collect();
     // In its own numbering the anchor comes first.
     let own = match next {

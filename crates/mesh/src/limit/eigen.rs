@@ -80,7 +80,8 @@ pub(super) fn plane(s: &Rows, point: &[f64], start: [Vec<f64>; 2], first: bool) 
 /// the limit point and of the tangent `along` are taken out, has `inner` vertices all on the same side of `own`. Both are
 /// left eigenvectors, so a shape without a part of them stays without.
 pub(super) fn goes_one_way(s: &Rows, [point, along]: [&[f64]; 2], start: &[f64], own: usize, inner: &[usize]) -> bool {
-    let mut shape = start.to_vec();
+    // Not quite even: an uneven shape that lasts longer has to show, one that lasts as long has not.
+    let mut shape: Vec<f64> = start.iter().enumerate().map(|(i, x)| x * (1.0 + 1e-6 * (i % 3) as f64)).collect();
     for _ in 0..STEPS {
         let mut next: Vec<f64> = s.iter().map(|row| row.iter().map(|&(v, w)| w * shape[v as usize]).sum()).collect();
         let part = dot(&next, point);

@@ -15,6 +15,7 @@ use crate::connect::UNMATCHED;
 use crate::copies::Beyond;
 use crate::crease::Creases;
 use crate::scheme::Tags;
+use crate::split::Split;
 use crate::topology::{Connectivity, Topology, is_boundary};
 
 /// What stays in place when a level is refined.
@@ -200,8 +201,8 @@ impl Seen {
         key.extend((0..sharp.len() as u32).filter(|&v| sharp[v as usize] && ring[v as usize] < rings));
     }
 
-    /// The neighbourhood as a mesh of its own.
-    pub fn patch(&mut self, c: &impl Connectivity) -> Patch {
+    /// The neighbourhood as a mesh of its own, for `split`.
+    pub fn patch(&mut self, c: &impl Connectivity, split: Split) -> Patch {
         // Where each face begins in the lists, again.
         for (h, &g) in self.half_edges.iter().enumerate().rev() {
             self.face_at[c.face(g) as usize] = h as u32 + 1;
@@ -218,7 +219,13 @@ impl Seen {
         for &g in &self.half_edges {
             self.face_at[c.face(g) as usize] = 0;
         }
-        let (topology, class) = Topology::assemble(self.offsets.clone(), &self.corners, self.vertices.len(), &mate);
+        let (mut offsets, mut corners) = (self.offsets.clone(), self.corners.clone());
+        if let Split::Sqrt3 { .. } = split {
+            let ends = |h: usize| mate[h] == UNMATCHED && !is_boundary(c.twin(self.half_edges[h]));
+            let ends: Vec<u32> = (0..).zip(&self.half_edges).map(|x| x.0).filter(|&h| ends(h as usize)).collect();
+            close(&ends, &mut offsets, &mut corners, &mut mate);
+        }
+        let (topology, class) = Topology::assemble(offsets, &corners, self.vertices.len(), &mate);
         let back = |c: &u32| *c as usize;
         let marked = !self.edge_sharpness.is_empty() || !self.vertex_sharpness.is_empty() || !self.beyond.is_empty();
         let edge = |h: u32| self.edge_sharpness.get(h as usize).copied().unwrap_or(0.0);
@@ -240,6 +247,31 @@ impl Seen {
             class,
             knots: self.knots.clone(),
             key: self.key.clone(),
+        }
+    }
+}
+
+/// Puts a triangle on each of the triangles' sides where a patch `ends`, those of a row to one point: a split that cuts rims would
+/// take such sides for one, of which a triangle can have no more than one. The point counts as a copy of one of the row's.
+fn close(ends: &[u32], offsets: &mut Vec<u32>, corners: &mut Vec<u32>, mate: &mut Vec<u32>) {
+    let next = |h: u32| if h % 3 == 2 { h - 2 } else { h + 1 };
+    let first = corners.len() as u32;
+    for (&h, i) in ends.iter().zip(0..) {
+        let (a, b) = (corners[h as usize], corners[next(h) as usize]);
+        corners.extend([b, a, a]);
+        mate.extend([h, UNMATCHED, UNMATCHED]);
+        mate[h as usize] = first + 3 * i;
+        offsets.push(corners.len() as u32);
+    }
+    for &h in ends {
+        // The side that goes on where this one ends: round the patch's faces there.
+        let mut on = next(h);
+        while mate[on as usize] < first {
+            on = next(mate[on as usize]);
+        }
+        if mate[on as usize] != UNMATCHED {
+            let (one, other) = (mate[h as usize] + 2, mate[on as usize] + 1);
+            (mate[one as usize], mate[other as usize]) = (other, one);
         }
     }
 }
