@@ -120,13 +120,13 @@ impl Table {
         let Some(entry) = scheme(id) else { panic!("{id} is not in the registry") };
         let one = Plan::new(entry, Boundary::default(), 1);
         if run(&build(smooth), &one).points == run(&build(&creased), &one).points {
-            println!("{id:<19}{named:<25}{level:>2} {:>9}  not measured: this scheme does not honour creases", "");
+            println!("{id:<19}{named:<26}{level:>2} {:>9}  not measured: this scheme does not honour creases", "");
             return;
         }
         let after = self.row(id, &named, &creased, level);
         if let (Some(before), Some(after)) = (before, after) {
             let more = (after / before - 1.0) * 100.0;
-            println!("{:>47}creases add {more:.0}% (at most {MORE_FOR_CREASES:.0}%)", "");
+            println!("{:>48}creases add {more:.0}% (at most {MORE_FOR_CREASES:.0}%)", "");
             if more > MORE_FOR_CREASES {
                 self.missed.push(format!("creases of {id} on {name}: {more:.0}% more"));
             }
@@ -186,7 +186,7 @@ impl Table {
         }
         let (all, half) = (ns(median(&mut all)), (ns(median(&mut half)), ns(all[0])));
         let (half, best) = half;
-        let mut line = format!("{id:<19}{name:<25}{level:>2} {faces:>9} {all:>8.1} {half:>8.1} {best:>8.1} ");
+        let mut line = format!("{id:<19}{name:<26}{level:>2} {faces:>9} {all:>8.1} {half:>8.1} {best:>8.1} ");
         line += &format!("{:>6.1} ", ns(stored as f64 / self.bytes_per_second));
         let budget = BUDGETS.iter().find(|b| b.0 == id).map(|b| b.1);
         line += &match budget {
@@ -249,7 +249,7 @@ fn main() {
         "ns a face of the last level, medians, one thread, {fresh} memory; plain stores {:.1} GB/s",
         table.bytes_per_second / 1e9
     );
-    print!("{:<19}{:<25}{:>2} {:>9} {:>8} {:>8} ", "scheme", "mesh", "L", "faces", "all", "refine");
+    print!("{:<19}{:<26}{:>2} {:>9} {:>8} {:>8} ", "scheme", "mesh", "L", "faces", "all", "refine");
     print!("{:>8} {:>6} {:>14}", "best", "limit", "budget        ");
     Peer::ALL.iter().for_each(|peer| print!("{:>18}", peer.name()));
     println!();

@@ -12,8 +12,9 @@
 //! ```
 //!
 //! Most files are in order, and keep it; so do small ones, which caches hold whole. What people call a vertex or a face
-//! is never the number here: [`crate::Mesh::vertex_source`] and [`crate::Mesh::face_source`] say what it is. Cost: 2 ns a face to look; a
-//! sort of 20 ns a face, which connecting them wins back. Limit: ten bits a coordinate, so a detail below a thousandth of the model stays as it was.
+//! is never the number here: [`crate::Mesh::vertex_source`] and [`crate::Mesh::face_source`] say what it is. Cost: a sort (some
+//! 11 ns a face), which connecting the faces wins back: 143 ns a face for all of building where it was 150. Limit: ten bits a
+//! coordinate, so a detail below a thousandth of the model stays as it was.
 
 use crate::order::{key, sort_keys};
 use crate::soup::{NONE, Soup};
@@ -35,7 +36,7 @@ pub(crate) fn order(soup: &Soup, class: &[u32]) -> Option<Vec<u32>> {
     for two in first.windows(2) {
         jumps += u64::from(two[0].abs_diff(two[1]));
     }
-    if count < MANY || jumps * NEAR < (count * class.len()) as u64 {
+    if count < MANY || jumps * NEAR < count as u64 * class.len() as u64 {
         return None;
     }
     let [low, high] = bounds(&soup.positions);

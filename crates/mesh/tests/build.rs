@@ -254,6 +254,8 @@ fn a_fan_that_touches_a_cut_goes_with_it() {
             let mesh = common::build(&soup);
             let copies: Vec<usize> = (0..mesh.positions.len()).filter(|&v| mesh.vertex_source[v] == at).collect();
             assert_eq!((copies.len(), mesh.tied.len()), (4, usize::from(moves)));
+            assert_eq!(Mesh::unpack(&mesh.pack()).unwrap(), *mesh);
+            let exact: Vec<[f64; 3]> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
             for scheme in SCHEMES.iter().filter(|s| !["dual", "linear"].contains(&s.info.group) && !s.info.is_random())
             {
                 for (level, limit) in [(1, false), (2, true), (3, false)] {
@@ -262,6 +264,13 @@ fn a_fan_that_touches_a_cut_goes_with_it() {
                     let Ok(refined) = limn_mesh::refine(&mesh, &plan, u64::MAX) else { continue };
                     let place = |v: usize| refined.points[v].map(f32::to_bits);
                     assert!(copies.iter().all(|&v| place(v) == place(copies[0])), "{}, level {level}", scheme.info.id);
+                    // The slow way says the same.
+                    let slow = limn_mesh::refine::evaluate(&mesh, &plan, &exact, |_| ()).unwrap();
+                    for &v in &copies {
+                        let off =
+                            (0..3).map(|k| (slow[v][k] - f64::from(refined.points[v][k])).abs()).fold(0.0, f64::max);
+                        assert!(off < 1e-5, "{}, level {level}: {off}", scheme.info.id);
+                    }
                 }
             }
             for (id, level) in [("catmull-clark", 1), ("loop", 1)] {

@@ -145,6 +145,20 @@ fn scattered_faces_are_put_in_order_and_keep_their_names() {
     }
 }
 
+/// Large meshes in order stay so, where numbers have 32 bits too.
+#[test]
+fn order_is_kept_where_there_is_some() {
+    const SIDE: u32 = 264;
+    let at = |i: u32, j: u32| j * (SIDE + 1) + i;
+    let places = |n: u32| (0..n).flat_map(move |j| (0..n).map(move |i| (i, j)));
+    let positions = places(SIDE + 1).map(|(i, j)| [i as f32, j as f32, 0.0]).collect();
+    let faces: Vec<[u32; 4]> =
+        places(SIDE).map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]).collect();
+    assert!(faces.len() as u64 * u64::from((SIDE + 1) * (SIDE + 1)) > u64::from(u32::MAX));
+    let (mesh, _) = Mesh::build(&Soup::from_faces(positions, &faces), Weld::Off).unwrap();
+    assert!(mesh.face_source.is_sorted() && mesh.vertex_source.is_sorted());
+}
+
 /// Faces of any vertices, with repeats, stray positions and edges of many faces: as many as are put in order.
 #[test]
 fn rubble_is_put_in_order_whatever_it_holds() {
