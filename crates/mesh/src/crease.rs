@@ -280,6 +280,18 @@ impl Creases {
         self.flags[v as usize] & !FADES > 1
     }
 
+    /// Whether `v` is sharp, or an end of a sharp edge.
+    #[inline(always)]
+    pub(crate) fn is_marked(&self, v: u32) -> bool {
+        self.flags[v as usize] != 0
+    }
+
+    /// Whether what becomes of an edge inside a ring of faces can be told from that ring's edges.
+    pub(crate) fn is_local(&self, decay: Decay) -> bool {
+        let fades = || self.sharp.iter().any(|&e| self.edges[e as usize] < INFINITE);
+        self.beyond.is_empty() && (decay == Decay::Uniform || !fades())
+    }
+
     /// Whether `v` is an end of a sharp edge.
     #[inline(always)]
     pub(crate) fn is_on_crease(&self, v: u32) -> bool {

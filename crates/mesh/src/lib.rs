@@ -40,6 +40,7 @@ pub mod order;
 mod owned;
 pub mod pack;
 pub mod pair;
+mod patch;
 pub mod plan;
 pub mod refine;
 pub mod refined;

@@ -245,6 +245,18 @@ impl Job {
         Ok(Job { mesh, plan, steps, geometry, uv, rows: 0, total: total.max(1) })
     }
 
+    /// Makes normals along with the points where that is cheaper than afterwards: [`Refined::known_normals`].
+    pub fn shaded(mut self) -> Job {
+        self.geometry.shaded = FULL;
+        self
+    }
+
+    /// Makes every level from the one before, where patches would make the last ones at once (`patch/`): the slow twin of these.
+    pub fn level_by_level(mut self) -> Job {
+        self.geometry.no_patches();
+        self
+    }
+
     /// Works off about `rows` rows (one new point, or one face's half-edges; some 50 ns each) and says whether all is done.
     pub fn step(&mut self, rows: usize) -> bool {
         let mut quota = rows;
@@ -273,8 +285,11 @@ impl Job {
     pub fn finish(mut self) -> Refined {
         while !self.step(usize::MAX) {}
         let normals = self.geometry.limit.take().map(|l| l.normals);
+        let shading = std::mem::take(&mut self.geometry.normals);
         let mut refined = self.gather();
-        refined.limit_normals = normals.filter(|_| FULL).map(|n| complete(n, &refined.points, &refined.faces));
+        refined.known_normals = Some(shading).filter(|n| !n.is_empty());
+        refined.known_normals =
+            refined.known_normals.or(normals.filter(|_| FULL).map(|n| complete(n, &refined.points, &refined.faces)));
         refined
     }
 
@@ -306,7 +321,7 @@ impl Job {
                 vertex_parents: t.vertices(),
                 source: self.geometry.source,
                 kinds: Vec::new(),
-                limit_normals: None,
+                known_normals: None,
                 split: Split::Quad,
                 mesh: self.mesh,
             };
@@ -340,7 +355,7 @@ impl Job {
             vertex_parents: if split.stores() { u32::MAX } else { v },
             source: self.geometry.source,
             kinds: self.geometry.kinds,
-            limit_normals: None,
+            known_normals: None,
             split,
             mesh: self.mesh,
         };

@@ -92,8 +92,8 @@ pub struct Refined {
     pub parent_ranges: Option<[u32; 2]>,
     /// Vertices below this were the parent level's (all of them at level 0).
     pub vertex_parents: u32,
-    /// Unit normals of the limit surface, where the points are in the limit.
-    pub limit_normals: Option<Vec<[f32; 3]>>,
+    /// Unit normals that are known already: of the limit surface where the points are there, else what a shaded job made.
+    pub known_normals: Option<Vec<[f32; 3]>>,
     /// What each face was made from, after a dual split; else empty.
     pub kinds: Vec<FaceKind>,
     /// The mesh's face behind each face; empty where that is arithmetic.
@@ -132,7 +132,7 @@ impl Refined {
     /// Smooth unit normals: those of the limit where the points are there, else the area-weighted sum of the normals of the faces around each vertex (quads by their
     /// diagonals, polygons by Newell's sum); (0, 0, 0) where that vanishes. Cost: about 10 ns a face.
     pub fn normals(&self) -> Vec<[f32; 3]> {
-        self.limit_normals.clone().unwrap_or_else(|| normals(&self.points, &self.faces))
+        self.known_normals.clone().unwrap_or_else(|| normals(&self.points, &self.faces))
     }
 }
 
@@ -181,16 +181,20 @@ fn normals(points: &[[f32; 3]], faces: &Faces) -> Vec<[f32; 3]> {
             }
         }
     }
-    for n in &mut sums {
-        // Scale by the largest component first: tiny faces have normals whose squares vanish.
-        let largest = n[0].abs().max(n[1].abs()).max(n[2].abs());
-        if largest > 0.0 && largest.is_finite() {
-            let m = n.map(|x| x / largest);
-            let length = (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]).sqrt();
-            *n = m.map(|x| x / length);
-        } else {
-            *n = [0.0; 3];
-        }
-    }
+    sums.iter_mut().for_each(|n| *n = unit(*n));
     sums
+}
+
+/// A vector of length one; zero if that cannot be told.
+#[inline]
+pub(crate) fn unit(n: [f32; 3]) -> [f32; 3] {
+    // Scale by the largest component first: tiny faces have normals whose squares vanish.
+    let largest = n[0].abs().max(n[1].abs()).max(n[2].abs());
+    if largest > 0.0 && largest.is_finite() {
+        let m = n.map(|x| x / largest);
+        let length = (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]).sqrt();
+        m.map(|x| x / length)
+    } else {
+        [0.0; 3]
+    }
 }

@@ -19,6 +19,7 @@ use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::owned::Owned;
+use crate::patch::{self, Patches};
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
@@ -72,12 +73,19 @@ pub(crate) struct Track {
     listed: bool,
     /// If the last level goes to the limit.
     pub(crate) limit: Option<Projection>,
+    /// The level from which patches make the last one, and they.
+    patches_from: Option<u32>,
+    patches: Option<Box<Patches>>,
+    /// Whether normals are wanted of patches, and these.
+    pub(crate) shaded: bool,
+    pub(crate) normals: Vec<[f32; 3]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
     Fair(u32, Cursor),
     Points(Cursor),
+    Patches,
     Wide(Cursor),
     HalfEdges(u32),
     Corners(u32),
@@ -122,6 +130,10 @@ impl Track {
             lone: Vec::new(),
             limit: limit.filter(|_| FULL).map(Projection::new),
             knots: Vec::new(),
+            patches_from: None,
+            patches: None,
+            shaded: false,
+            normals: Vec::new(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
@@ -130,6 +142,9 @@ impl Track {
         if !uv {
             track.source = holes::sources(mesh, plan.rules.boundary);
             track.listed |= !track.source.is_empty();
+            // What lists its faces, carries colours or ties copies goes level by level.
+            let plain = !track.listed && track.wide.is_empty() && mesh.tied.is_empty();
+            track.patches_from = if FULL && plain { patch::start(plan, steps) } else { None };
         }
         if !idle {
             track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
@@ -155,9 +170,19 @@ impl Track {
             Some(_) if self.uv => Stage::Wide(Cursor::default()),
             _ if self.uv => Stage::Done,
             _ if FULL && plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
-            Some(_) => Stage::Points(Cursor::default()),
+            Some(_) => self.first_stage(),
             None => self.last_stage(),
         };
+    }
+
+    /// Takes no patches.
+    pub(crate) fn no_patches(&mut self) {
+        self.patches_from = None;
+    }
+
+    /// How the next level, or all that are left, are made.
+    fn first_stage(&self) -> Stage {
+        if self.patches_from == Some(self.level) { Stage::Patches } else { Stage::Points(Cursor::default()) }
     }
 
     /// What is left to be done with the last level.
@@ -296,7 +321,7 @@ impl Track {
                 (*pass, *cursor) = (*pass + 1, Cursor::default());
                 if *pass == plan.fairing(self.level).map_or(0, |f| f.passes()) {
                     let over = self.level as usize == steps.len();
-                    self.stage = if over { self.last_stage() } else { Stage::Points(Cursor::default()) };
+                    self.stage = if over { self.last_stage() } else { self.first_stage() };
                 }
             }
             return None;
@@ -315,6 +340,9 @@ impl Track {
         }
         let at = steps.get(self.level as usize)?;
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
+        if FULL && self.stage == Stage::Patches {
+            return self.patch(level, mesh, plan, steps, quota);
+        }
         if FULL && self.uv && !split.keeps_corners() {
             return Some(self.chart(level, mesh, plan, (at, following), quota));
         }
@@ -410,7 +438,53 @@ impl Track {
                     return Some(next);
                 }
             }
-            Stage::Fair(..) | Stage::Limit(_) | Stage::Done => {}
+            Stage::Fair(..) | Stage::Patches | Stage::Limit(_) | Stage::Done => {}
+        }
+        None
+    }
+
+    /// Makes the last level of patches.
+    fn patch(
+        &mut self,
+        level: &Level<'_>,
+        mesh: &Mesh,
+        plan: &Plan,
+        steps: &[Step],
+        quota: &mut usize,
+    ) -> Option<Option<Owned>> {
+        let step = steps.get(self.level as usize)?;
+        let sharp = sharp_at(steps, self.level, mesh, &self.corner);
+        let tags = plan.tags(step, self.level, sharp, self.creases.as_ref());
+        if self.patches.is_none() {
+            self.patches = Patches::new(*step, plan.rules, plan.level - self.level, self.counts).map(Box::new);
+        }
+        let progress = match &mut self.patches {
+            Some(patches) => {
+                let [counts, _] = patches.counts();
+                zeroed(&mut self.new_points, counts.vertices as usize);
+                zeroed(&mut self.normals, if self.shaded { counts.vertices as usize } else { 0 });
+                zeroed(&mut self.corners, counts.corners as usize);
+                let (points, normals, corners) =
+                    (&mut self.new_points[..], &mut self.normals[..], &mut self.corners[..]);
+                let old = self.points.as_deref().unwrap_or(&mesh.positions);
+                patches.work(level, &tags, old, &mut patch::Out { points, normals, corners }, quota)
+            }
+            None => patch::Progress::Unfit,
+        };
+        match (progress, self.patches.take()) {
+            (patch::Progress::Done, Some(patches)) => {
+                self.level = plan.level;
+                [self.counts, self.before] = patches.counts();
+                self.points = Some(std::mem::take(&mut self.new_points));
+                return Some(None);
+            }
+            (patch::Progress::More, patches) => self.patches = patches,
+            _ => {
+                // Marks fade, and rings become alike: perhaps from the next level on.
+                self.patches_from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
+                (self.new_points, self.normals, self.corners) = Default::default();
+                self.stage = Stage::Points(Cursor::default());
+            }
         }
         None
     }

@@ -163,7 +163,7 @@ impl Refined {
             colors,
             parent_ranges,
             vertex_parents,
-            limit_normals,
+            known_normals,
             kinds,
             source,
             split,
@@ -193,8 +193,8 @@ impl Refined {
         out.number(parent_ranges.is_some().into());
         out.array(&parent_ranges.unwrap_or_default());
         out.number(vertex_parents);
-        out.number(limit_normals.is_some().into());
-        out.array(&limit_normals.unwrap_or_default());
+        out.number(known_normals.is_some().into());
+        out.array(&known_normals.unwrap_or_default());
         out.bytes(&kinds.iter().map(|&kind| kind as u8).collect::<Vec<_>>());
         out.array(&source);
         put_split(&mut out, split);
@@ -224,7 +224,7 @@ impl Refined {
             colors: from.array()?,
             parent_ranges: from.option(Reader::exactly)?,
             vertex_parents: from.number()?,
-            limit_normals: from.option(Reader::array)?,
+            known_normals: from.option(Reader::array)?,
             kinds: from
                 .bytes()?
                 .iter()

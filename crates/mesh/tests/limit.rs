@@ -380,7 +380,7 @@ fn jobs_go_to_the_limit() {
                 assert!(idle || (job.progress() - 1.0).abs() < 1e-6, "{what}: progress ends at {}", job.progress());
                 let sliced = job.finish();
                 assert_eq!(whole.points, sliced.points, "{what}");
-                assert_eq!(whole.limit_normals, sliced.limit_normals, "{what}");
+                assert_eq!(whole.known_normals, sliced.known_normals, "{what}");
                 assert_eq!(whole.normals(), sliced.normals(), "{what}");
                 let plain = refine(&mesh, &Plan { limit: false, ..plan.clone() }, u64::MAX).unwrap();
                 assert_eq!((&plain.faces, &plain.colors), (&whole.faces, &whole.colors), "{what}");

@@ -40,7 +40,7 @@ fn same(a: &Refined, b: &Refined, what: &str) {
     assert_eq!(a.uv, b.uv, "{what}");
     assert_eq!(a.colors, b.colors, "{what}");
     assert_eq!(a.kinds, b.kinds, "{what}");
-    assert_eq!(a.limit_normals, b.limit_normals, "{what}");
+    assert_eq!(a.known_normals, b.known_normals, "{what}");
     let sources = |r: &Refined| (0..r.faces.count() as u32).map(|f| r.face_source(f)).collect::<Vec<_>>();
     assert_eq!(sources(a), sources(b), "{what}");
     assert_eq!(a.normals(), b.normals(), "{what}");

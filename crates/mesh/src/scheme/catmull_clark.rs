@@ -43,6 +43,7 @@ impl Scheme for CatmullClark {
     const COMMON: bool = true;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::CatmullClark;
+    const RING: bool = true;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

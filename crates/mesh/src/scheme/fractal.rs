@@ -62,6 +62,7 @@ pub(super) const fn fractal() -> Entry {
         return Entry {
             info: INFO,
             common: false,
+            ring: false,
             limit: LimitRule::Analysis,
             honours: Honours::ALL,
             eval: |_, _, _, _| (),
@@ -71,6 +72,7 @@ pub(super) const fn fractal() -> Entry {
     Entry {
         info: INFO,
         common: false,
+        ring: false,
         limit: LimitRule::Analysis,
         honours: Honours::ALL,
         eval: |level, split, tags, sink| rules(level, split, tags, sink),

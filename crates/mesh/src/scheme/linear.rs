@@ -39,6 +39,7 @@ impl Scheme for Linear {
     const COMMON: bool = true;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
+    const RING: bool = true;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

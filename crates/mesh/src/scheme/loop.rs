@@ -68,6 +68,7 @@ impl Scheme for Loop {
     const COMMON: bool = true;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Loop;
+    const RING: bool = true;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -245,6 +245,10 @@ pub trait Scheme: 'static {
     /// How the limit of its vertices is found.
     const LIMIT: LimitRule = LimitRule::Analysis;
 
+    /// Whether what it makes inside a face, and around the faces made there, depends on the faces around that face alone. Then
+    /// many levels are made at once, a face after the other (`patch/`).
+    const RING: bool = false;
+
     /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K);
 }
@@ -297,6 +301,8 @@ pub struct Entry {
     pub limit: LimitRule,
     /// [`Scheme::COMMON`].
     pub common: bool,
+    /// [`Scheme::RING`].
+    pub(crate) ring: bool,
     /// Which marks mean something to it.
     pub honours: Honours,
     eval: EvalFn,
@@ -324,7 +330,7 @@ const fn entry<S: Scheme>() -> Entry {
     };
     // Papers are told about by the build that has their rules.
     let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
-    Entry { info, common: S::COMMON, honours, limit: S::LIMIT, eval, record }
+    Entry { info, common: S::COMMON, ring: S::RING, honours, limit: S::LIMIT, eval, record }
 }
 
 /// Which kinds of levels a scheme can meet follows from what it takes and makes; the others are not compiled.

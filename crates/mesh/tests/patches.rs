@@ -1,0 +1,124 @@
+//! Patch grids against the slow way: points of recorded rows in f64, faces of the general engine, normals of the faces around.
+
+mod common;
+
+use common::{build, cage, gallery};
+use limn_mesh::refine::evaluate;
+use limn_mesh::*;
+use proptest::prelude::*;
+
+fn diagonal(points: &[[f32; 3]]) -> f64 {
+    let [low, high] = bounds(points);
+    (0..3).map(|k| f64::from(high[k] - low[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Holds a level against rows, and its faces and normals against those of the general engine. Says whether patches made it.
+fn check(soup: &Soup, id: &str, level: u32, boundary: Boundary, what: &str) -> bool {
+    let mesh = build(soup);
+    let plan = Plan::new(scheme(id).unwrap(), boundary, level);
+    let job = || Job::new(mesh.clone(), plan.clone(), u64::MAX).unwrap();
+    let (mut fast, general) = (job().shaded().finish(), job().level_by_level().finish());
+    let positions: Vec<[f64; 3]> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+    let exact = evaluate(&mesh, &plan, &positions, |_| ()).unwrap();
+    let size = diagonal(&mesh.positions);
+    assert_eq!(fast.points.len(), exact.len(), "{what}");
+    for (v, (p, q)) in fast.points.iter().zip(&exact).enumerate() {
+        for k in 0..3 {
+            assert!((f64::from(p[k]) - q[k]).abs() <= 1e-6 * size, "{what}: vertex {v} is {p:?}, not {q:?}");
+        }
+    }
+    assert_eq!(fast.faces, general.faces, "{what}");
+    assert_eq!((fast.counts, fast.parent_ranges), (general.counts, general.parent_ranges), "{what}");
+    let Some(known) = fast.known_normals.take() else { return false };
+    for (v, (n, m)) in known.iter().zip(fast.normals()).enumerate() {
+        let off = (0..3).map(|k| (n[k] - m[k]).abs()).fold(0.0, f32::max);
+        // Points are known to a few digits of a small face's size.
+        assert!(off <= 5e-3, "{what}: the normal of {v} is {n:?}, not {m:?}");
+    }
+    true
+}
+
+const BOUNDARIES: [Boundary; 2] = [Boundary::EdgeAndCorner, Boundary::EdgeOnly];
+
+#[test]
+fn the_gallery_agrees() {
+    for (name, soup) in gallery() {
+        let (triangles, _) = triangulate_soup(&soup);
+        for (level, boundary) in [(3, BOUNDARIES[0]), (4, BOUNDARIES[1])] {
+            for (soup, id) in [(&soup, "catmull-clark"), (&soup, "linear"), (&triangles, "loop")] {
+                check(soup, id, level, boundary, &format!("{name}, {id}, level {level}, {boundary:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_should_be_made_of_patches_is() {
+    let creature = (shape("creature").unwrap().build)();
+    let (triangles, _) = triangulate_soup(&creature);
+    let grid = (shape("grid").unwrap().build)();
+    for (soup, id, level) in [
+        (&creature, "catmull-clark", 3),
+        (&triangles, "loop", 4),
+        (&triangles, "linear", 3),
+        (&grid, "catmull-clark", 7),
+    ] {
+        assert!(check(soup, id, level, Boundary::default(), id), "{id} at level {level} went level by level");
+    }
+}
+
+/// The same with creases and corners, sharp and semi-sharp.
+#[test]
+fn creases_agree() {
+    let mut patched = 0;
+    for (name, sharpness) in
+        [("cube", [10.0, 10.0]), ("torus", [10.0, 2.5]), ("grid", [1.5, 3.0]), ("mouse", [10.0, 0.5])]
+    {
+        let mut soup = (shape(name).unwrap().build)();
+        let mesh = build(&soup);
+        let t = &mesh.topology;
+        for e in (0..t.edges()).step_by(5) {
+            let h = t.edge_half_edge(e);
+            let ends = [h, t.next(h)].map(|h| t.origin(h));
+            soup.marks.creases.push((ends, sharpness[e as usize / 5 % 2]));
+        }
+        soup.marks.corners.push((1, 10.0));
+        soup.marks.corners.push((3, 1.5));
+        for level in 3..=5 {
+            let what = format!("{name} with creases {sharpness:?}, level {level}");
+            patched += usize::from(check(&soup, "catmull-clark", level, Boundary::default(), &what));
+            let (triangles, _) = triangulate_soup(&soup);
+            check(&triangles, "loop", level, Boundary::default(), &format!("{what}, triangles"));
+        }
+    }
+    assert!(patched >= 6, "only {patched} of 12 went by patches");
+}
+
+/// Slices of any length make the same bits.
+#[test]
+fn slices_make_the_same() {
+    let mesh = build(&(shape("mouse").unwrap().build)());
+    let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 4);
+    let job = || Job::new(mesh.clone(), plan.clone(), u64::MAX).unwrap().shaded();
+    let whole = job().finish();
+    for rows in [1, 7, 100, 5000] {
+        let mut sliced = job();
+        while !sliced.step(rows) {}
+        let sliced = sliced.finish();
+        assert_eq!(whole.points, sliced.points, "{rows} rows at a time");
+        assert_eq!(whole.known_normals, sliced.known_normals, "{rows} rows at a time");
+        assert_eq!(whole.faces, sliced.faces, "{rows} rows at a time");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_cages_agree(soup in cage(), level in 3u32..5, edges in any::<bool>()) {
+        let boundary = BOUNDARIES[usize::from(edges)];
+        check(&soup, "catmull-clark", level, boundary, "a random cage");
+        let (triangles, _) = triangulate_soup(&soup);
+        check(&triangles, "loop", level, boundary, "a random cage of triangles");
+    }
+}
