@@ -22,6 +22,7 @@ use crate::owned::Owned;
 use crate::patch::{self, Patches};
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
+use crate::refined::{Faces, Refined};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::sink::{Cursor, Eval, Source, weigh};
 use crate::split::stored::Cut;
@@ -78,6 +79,8 @@ pub(crate) struct Track {
     patches: Option<Box<Patches>>,
     /// Whether normals are wanted of patches, and these.
     pub(crate) shaded: bool,
+    /// Whether `corners` are there already.
+    listed_before: bool,
     pub(crate) normals: Vec<[f32; 3]>,
 }
 
@@ -133,6 +136,7 @@ impl Track {
             patches_from: None,
             patches: None,
             shaded: false,
+            listed_before: false,
             normals: Vec::new(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
@@ -173,6 +177,18 @@ impl Track {
             Some(_) => self.first_stage(),
             None => self.last_stage(),
         };
+    }
+
+    /// Takes the buffers of a level with the same counts and faces.
+    pub(crate) fn reuse(&mut self, old: Refined) {
+        if self.patches_from.is_none() || !self.new_points.is_empty() {
+            return;
+        }
+        self.new_points = old.points;
+        self.normals = old.known_normals.filter(|_| self.shaded).unwrap_or_default();
+        if let Faces::Quads(corners) | Faces::Triangles(corners) = old.faces {
+            (self.corners, self.listed_before) = (corners, true);
+        }
     }
 
     /// Takes no patches.
@@ -462,10 +478,13 @@ impl Track {
             Some(patches) => {
                 let [counts, _] = patches.counts();
                 zeroed(&mut self.new_points, counts.vertices as usize);
-                zeroed(&mut self.normals, if self.shaded { counts.vertices as usize } else { 0 });
+                zeroed(
+                    &mut self.normals,
+                    if self.shaded && patches.can_shade() { counts.vertices as usize } else { 0 },
+                );
                 zeroed(&mut self.corners, counts.corners as usize);
-                let (points, normals, corners) =
-                    (&mut self.new_points[..], &mut self.normals[..], &mut self.corners[..]);
+                let (points, normals) = (&mut self.new_points[..], &mut self.normals[..]);
+                let corners = if self.listed_before { &mut [] } else { &mut self.corners[..] };
                 let old = self.points.as_deref().unwrap_or(&mesh.positions);
                 patches.work(level, &tags, old, &mut patch::Out { points, normals, corners }, quota)
             }
@@ -483,6 +502,7 @@ impl Track {
                 // Marks fade, and rings become alike: perhaps from the next level on.
                 self.patches_from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
                 (self.new_points, self.normals, self.corners) = Default::default();
+                self.listed_before = false;
                 self.stage = Stage::Points(Cursor::default());
             }
         }

@@ -14,7 +14,7 @@
 //! Cost: about the squared size of the ring times the points of the grid, once a class and depth. Memory: 4 bytes times the
 //! ring a point, per class.
 
-use super::grid::LANES;
+use super::grid::{LANES, strips};
 use super::layout::{Layout, place};
 use super::ring::{self, Corner, Ring};
 use crate::connect::connect;
@@ -43,7 +43,9 @@ struct Class {
     corners: Vec<Corner>,
     controls: u32,
     children: Vec<Child>,
-    /// Table of each depth, as far as they are made: `controls` columns of a grid's points.
+    /// What lies across each side: the ends of the spokes of its two corners, or of triangles the tip. None on a boundary.
+    across: Vec<Option<[u32; 2]>>,
+    /// Table of each depth, as far as they are made: `controls` columns of a grid's points and strips.
     exact: Vec<Vec<f64>>,
 }
 
@@ -70,12 +72,19 @@ pub(super) struct Classes {
     tables: Vec<Option<Table>>,
 }
 
-/// Where the grids of the four children lie in a grid.
+/// Where the grids and strips of the four children lie in a grid with strips ([`super::grid::Planes`]); [`INSIDE`] for
+/// strips between them.
 #[derive(Debug)]
 struct Grid {
+    /// Where strips begin.
+    strips: usize,
+    /// Values, strips included.
     points: usize,
     children: Vec<Vec<u16>>,
 }
+
+/// No place.
+const INSIDE: u16 = u16::MAX;
 
 impl Classes {
     pub(super) fn new(step: Step, rules: Rules, layout: &Layout) -> Classes {
@@ -98,7 +107,7 @@ impl Classes {
         let number = self.classes.len() as u32;
         self.numbers.insert(key.to_vec(), number);
         let corners = ring::corners(key, self.sides());
-        self.classes.push(Class { corners, controls: 0, children: Vec::new(), exact: Vec::new() });
+        self.classes.push(Class { corners, controls: 0, children: Vec::new(), across: Vec::new(), exact: Vec::new() });
         self.tables.push(None);
         self.refine(number).then_some(number)
     }
@@ -112,6 +121,12 @@ impl Classes {
         let sides = self.sides();
         let corners = self.classes[number as usize].corners.clone();
         let (faces, controls) = ring::faces(&corners);
+        let across = (0..sides as u32).map(|side| {
+            let ends = [(side + 1) % sides as u32, side];
+            let face = faces[1..].iter().find(|face| face[..2] == ends)?;
+            Some([face[2], face[face.len() - 1]])
+        });
+        let across = across.collect();
         let Some(t) = assemble(&faces, controls) else { return false };
         let kept: Vec<bool> = (0..controls as usize).map(|v| corners.get(v).is_some_and(|c| c.kept)).collect();
         let creases = marks(&t, &corners);
@@ -152,7 +167,7 @@ impl Classes {
             children.push(Child { class, rows });
         }
         let class = &mut self.classes[number as usize];
-        (class.controls, class.children) = (controls, children);
+        (class.controls, class.children, class.across) = (controls, children, across);
         true
     }
 
@@ -176,11 +191,17 @@ impl Classes {
         while self.classes[at].exact.len() <= depth {
             let next = self.classes[at].exact.len();
             let Some(d) = next.checked_sub(1) else {
-                // The corners themselves.
-                let (sides, controls) = (self.sides(), self.classes[at].controls as usize);
-                let mut table = vec![0.0; controls * sides];
+                // The corners themselves, and what is across.
+                let (sides, class, grid) = (self.sides(), &self.classes[at], &self.grids[0]);
+                let mut table = vec![0.0; class.controls as usize * grid.points];
                 let places: &[usize] = if sides == 4 { &[0, 1, 3, 2] } else { &[0, 1, 2] };
-                (0..sides).for_each(|k| table[k * sides + places[k]] = 1.0);
+                (0..sides).for_each(|k| table[k * grid.points + places[k]] = 1.0);
+                for (side, across) in class.across.iter().enumerate() {
+                    let ends = across.unwrap_or([side, (side + 1) % sides].map(|k| k as u32));
+                    for (p, control) in ends.into_iter().enumerate().take(sides - 2) {
+                        table[control as usize * grid.points + grid.strips + side * 2 + p] = 1.0;
+                    }
+                }
                 self.classes[at].exact.push(table);
                 continue;
             };
@@ -204,7 +225,8 @@ impl Classes {
                 }
                 for (control, sum) in sums.chunks_exact(n).enumerate() {
                     let column = &mut table[control * points..][..points];
-                    places.iter().zip(sum).for_each(|(&place, &x)| column[usize::from(place)] = x);
+                    let outside = places.iter().zip(sum).filter(|(place, _)| **place != INSIDE);
+                    outside.for_each(|(&place, &x)| column[usize::from(place)] = x);
                 }
             }
             self.classes[at].exact.push(table);
@@ -248,13 +270,27 @@ impl Grid {
             // From the middle of the last side to that of the first, and to that of the second.
             _ => [a + b, half - a],
         };
-        let children = if depth == 0 {
-            Vec::new()
-        } else {
-            (0..4).map(|k| inner().map(|p| place(sides, usize::from(m), of(k, p))).collect()).collect()
+        let count = |w: usize| if sides == 4 { w * w } else { w * (w + 1) / 2 };
+        let begin = strips(count(w));
+        // The first half of a side is its corner's child's first, the other half the next one's last.
+        let strip = |k: usize, side: usize, p: u16| match (k, side) {
+            _ if k >= sides => INSIDE,
+            (_, 0) => (begin + k * w) as u16 + p,
+            (_, last) if last + 1 == sides => (begin + (k + sides - 1) % sides * w) as u16 + half + p,
+            _ => INSIDE,
         };
-        let points = if sides == 4 { w * w } else { w * (w + 1) / 2 };
-        Grid { points, children }
+        let of_child = |k: usize| {
+            let mut places: Vec<u16> = inner().map(|p| place(sides, usize::from(m), of(k, p))).collect();
+            places.resize(strips(places.len()), INSIDE);
+            for side in 0..sides {
+                // A triangle's strip has a point less.
+                places.extend((0..=half).map(|p| if sides == 3 && p == half { INSIDE } else { strip(k, side, p) }));
+            }
+            places
+        };
+        // Of triangles the child in the middle is the last.
+        let children = if depth == 0 { Vec::new() } else { (0..4).map(of_child).collect() };
+        Grid { strips: begin, points: begin + sides * w, children }
     }
 }
 

@@ -17,10 +17,10 @@
 //! Cost: linear in a patch's points, once a depth. Limit: depths up to 7 (16-bit grid indices).
 
 use crate::split::Split;
-use crate::topology::Counts;
+use crate::topology::{Connectivity, Counts, boundary_rank, is_boundary};
 
-/// No id of this kind.
-pub(super) const NONE: u32 = u32::MAX;
+/// No id.
+const NONE: u32 = u32::MAX;
 
 /// Consecutive ids of a patch: those of patch q begin at `base + per * q`.
 #[derive(Clone, Debug)]
@@ -31,18 +31,23 @@ pub(super) struct Run {
     pub first: usize,
 }
 
-/// What the id of a point on a boundary is, which is nobody's first half: `base + ((rank << step | half) >> 1)`.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RimId {
-    base: u32,
-    step: u32,
-    half: u32,
+/// The ids of the points along a side of a patch, as linear functions: point p is `base[p] + own[p] q + other[p] o`, with q
+/// the patch and o the patch across, or the rank on a boundary. The corner and the middle are not in it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seam {
+    pub base: Vec<u32>,
+    /// 0 where the point belongs to the other.
+    pub own: Vec<u32>,
+    pub other: Vec<u32>,
 }
 
-impl RimId {
-    /// The id, on the boundary half-edge of that rank on the start level.
-    pub(super) fn id(self, rank: u32) -> u32 {
-        self.base + ((rank << self.step | self.half) >> 1)
+impl Seam {
+    /// Writes the ids of all `m` points.
+    #[inline(always)]
+    pub(super) fn ids(&self, q: u32, other: u32, out: &mut [u32]) {
+        for (((id, base), own), theirs) in out.iter_mut().zip(&self.base).zip(&self.own).zip(&self.other) {
+            *id = base.wrapping_add(own.wrapping_mul(q)).wrapping_add(theirs.wrapping_mul(other));
+        }
     }
 }
 
@@ -64,14 +69,12 @@ pub(super) struct Layout {
     pub face_runs: Vec<Run>,
     pub faces: Vec<u32>,
     pub face_steps: Vec<u32>,
-    /// Corners that lie on the border of the patch: where in `faces`, and which border point.
-    pub on_border: Vec<[u32; 2]>,
+    /// Of every run of faces, its corners that lie on the border: which corner, and which border point.
+    pub on_border: Vec<Vec<[u16; 2]>>,
     /// The place of border point (side, position), `m` a side; position 0 is the side's first corner.
     pub border: Vec<u16>,
-    /// Its id as base and step, if the patch owns it; else [`NONE`].
-    pub own: Vec<[u32; 2]>,
-    /// Its id on a boundary, if no patch owns it.
-    pub rim: Vec<RimId>,
+    /// Of every side, next to each side that may lie across, and to none.
+    seams: Vec<Seam>,
     /// Counts of the last level, of the one before it.
     pub counts: [Counts; 2],
     /// Where edge points of the first step begin.
@@ -129,8 +132,7 @@ impl Layout {
             face_steps: Vec::new(),
             on_border: Vec::new(),
             border: Vec::new(),
-            own: Vec::new(),
-            rim: vec![RimId::default(); sides * m],
+            seams: Vec::new(),
             counts: [levels[depth as usize], levels[depth as usize - 1]],
             first_edge: (counts.vertices + if quads { counts.faces } else { 0 }) as u32,
         };
@@ -200,27 +202,56 @@ impl Layout {
     }
 
     fn find_border(&mut self, levels: &[Counts], whole: &[[u16; 2]; 4]) {
-        let (own, m) = (self.owned(), self.m);
-        for side in 0..self.sides {
-            let (a, b) = (whole[side], whole[(side + 1) % self.sides]);
+        let (owned, sides, m) = (self.owned(), self.sides, self.m);
+        for side in 0..sides {
+            let (a, b) = (whole[side], whole[(side + 1) % sides]);
             for p in 0..m {
                 let at = [0, 1].map(|k| ((usize::from(a[k]) * (m - p) + usize::from(b[k]) * p) / m) as u16);
-                let place = self.place(at);
-                self.border.push(place);
-                self.own.push(own[usize::from(place)]);
-                if p > 0 && p != m / 2 {
-                    // Born in the middle of edge `half` of the 2^step that the side is cut into.
-                    let zeros = p.trailing_zeros();
-                    let (step, half) = (self.depth - 1 - zeros, (p >> (zeros + 1)) as u32);
-                    let Counts { vertices, faces, .. } = levels[step as usize];
-                    let base = match self.sides {
-                        4 => vertices + 3 * faces,
-                        _ => vertices + 6 * levels[step as usize - 1].faces,
-                    };
-                    self.rim[side * m + p] = RimId { base: base as u32, step, half };
-                }
+                self.border.push(self.place(at));
             }
         }
+        let own = |side: usize, p: usize| owned[usize::from(self.border[side * m + p])];
+        // Nobody's: born in the middle of edge `half` of the 2^step that the side is cut into, the second half of another
+        // (which is why it is nobody's), so that its rank is rank * 2^step + half and its edge half that behind the others.
+        let rim = |p: usize| {
+            let zeros = p.trailing_zeros();
+            let (step, half) = (self.depth - 1 - zeros, (p >> (zeros + 1)) as u32);
+            let Counts { vertices, faces, .. } = levels[step as usize];
+            let base = match sides {
+                4 => vertices + 3 * faces,
+                _ => vertices + 6 * levels[step as usize - 1].faces,
+            };
+            [base as u32 + half / 2, 1 << (step - 1)]
+        };
+        let mut seams = Vec::new();
+        for side in 0..sides {
+            for across in 0..=sides {
+                let mut seam = Seam { base: vec![0; m], own: vec![0; m], other: vec![0; m] };
+                for p in (1..m).filter(|&p| p != m / 2) {
+                    let [base, per] = own(side, p);
+                    if base != NONE {
+                        (seam.base[p], seam.own[p]) = (base, per);
+                    } else if across < sides {
+                        // The other's if these two can lie next to each other; else it does not matter.
+                        [seam.base[p], seam.other[p]] = own(across, m - p);
+                    } else {
+                        [seam.base[p], seam.other[p]] = rim(p);
+                    }
+                }
+                seams.push(seam);
+            }
+        }
+        self.seams = seams;
+    }
+
+    /// The seam of half-edge `h` of the start level with what lies across, and which patch or rank that is.
+    #[inline(always)]
+    pub(super) fn seam<C: Connectivity>(&self, c: &C, h: u32) -> (&Seam, u32) {
+        let sides = self.sides as u32;
+        let twin = c.twin(h);
+        let (across, other) =
+            if is_boundary(twin) { (sides, boundary_rank(twin)) } else { (twin % sides, twin / sides) };
+        (&self.seams[(h % sides * (sides + 1) + across) as usize], other)
     }
 
     fn list_faces(&mut self, mut families: Vec<Family>) {
@@ -231,12 +262,14 @@ impl Layout {
             slot[usize::from(place)] = slot_of;
         }
         for family in families {
-            self.face_runs.push(Run { base: family.base, per: family.per, first: self.faces.len() });
+            let first = self.faces.len();
+            let mut on_border = Vec::new();
+            self.face_runs.push(Run { base: family.base, per: family.per, first });
             for frame in family.frames {
                 for &p in &frame.0[..self.sides] {
                     let place = usize::from(self.place(p));
                     if slot[place] != NONE {
-                        self.on_border.push([self.faces.len() as u32, slot[place]]);
+                        on_border.push([(self.faces.len() - first) as u16, slot[place] as u16]);
                         self.faces.push(0);
                         self.face_steps.push(0);
                     } else {
@@ -245,6 +278,7 @@ impl Layout {
                     }
                 }
             }
+            self.on_border.push(on_border);
         }
     }
 }

@@ -31,10 +31,10 @@ mod ring;
 use crate::plan::{Plan, Step};
 use crate::scheme::{Rules, Tags};
 use crate::split::{Level, on};
-use crate::topology::{Connectivity, Counts, boundary_rank, is_boundary};
+use crate::topology::{Connectivity, Counts, is_boundary};
 use class::Classes;
-use grid::{MOST_STEPS, Planes, Spline};
-use layout::{Layout, NONE, Run};
+use grid::{MOST_STEPS, Planes, Rows, Spline};
+use layout::{Layout, Run};
 use ring::Ring;
 use std::ops::Range;
 
@@ -97,23 +97,27 @@ struct Worker {
     controls: Vec<Point>,
     points: Planes,
     normals: Planes,
+    rows: Rows,
     ids: Vec<u32>,
 }
 
-/// What patches leave for their borders.
+/// What a patch leaves of a side: the point at its corner and the one in its middle; of normals the sum of the patch's own at the
+/// corner, and the unit vector in the middle.
+type Anchor = [Point; 2];
+
+/// What patches leave for what they share, one a half-edge of the start level; normals if they are wanted.
 #[derive(Debug, Default)]
 struct Kept {
-    /// Of every half-edge of the start level: the point at its origin, and the one in its middle.
-    anchors: Vec<[Point; 2]>,
-    /// Of every half-edge: the sum of the patch's normals at each of its `m` points; empty if normals are not wanted.
-    sums: Vec<Point>,
+    points: Vec<Anchor>,
+    normals: Vec<Anchor>,
 }
 
-/// Sides of patches on the boundary, with their `m` points.
+/// Sides of patches on the boundary, with their `m` points and normals.
 #[derive(Debug, Default)]
 struct Rims {
     half_edges: Vec<u32>,
     points: Vec<Point>,
+    normals: Vec<Point>,
 }
 
 /// The parts of the buffers that belong to consecutive patches.
@@ -121,8 +125,7 @@ struct Target<'a> {
     points: Vec<&'a mut [Point]>,
     normals: Vec<&'a mut [Point]>,
     corners: Vec<&'a mut [u32]>,
-    anchors: &'a mut [[Point; 2]],
-    sums: &'a mut [Point],
+    anchors: [&'a mut [Anchor]; 2],
     rims: &'a mut Rims,
 }
 
@@ -139,6 +142,7 @@ impl Patches {
             controls: Vec::new(),
             points: Planes::new(m),
             normals: Planes::new(m),
+            rows: Rows::new(),
             ids: vec![0; layout.sides * m],
         };
         Some(Patches { layout, worker, kept: Kept::default(), rims: Rims::default(), next: 0 })
@@ -147,6 +151,11 @@ impl Patches {
     /// Counts of the last level, and of the one before.
     pub(crate) fn counts(&self) -> [Counts; 2] {
         self.layout.counts
+    }
+
+    /// Whether normals are cheaper here than afterwards: not on small grids, where borders are most of the work.
+    pub(crate) fn can_shade(&self) -> bool {
+        self.layout.depth > 2
     }
 
     /// How many faces a patch is cut into.
@@ -176,14 +185,13 @@ impl Patches {
         quota: &mut usize,
     ) -> Progress {
         let (patches, m) = (c.faces(), self.layout.m);
-        if self.kept.anchors.is_empty() {
+        if self.kept.points.is_empty() {
             if !ring::is_local(tags) {
                 return Progress::Unfit;
             }
-            self.kept.anchors = bytemuck::zeroed_vec(c.half_edges() as usize);
-            if !out.normals.is_empty() {
-                self.kept.sums = bytemuck::zeroed_vec(c.half_edges() as usize * m);
-            }
+            let half_edges = c.half_edges() as usize;
+            self.kept.points = bytemuck::zeroed_vec(half_edges);
+            self.kept.normals = bytemuck::zeroed_vec(if out.normals.is_empty() { 0 } else { half_edges });
         }
         if self.next < patches {
             let from = self.next;
@@ -212,67 +220,40 @@ impl Patches {
 
     /// Puts together what patches left for edges and vertices: edges first, then vertices.
     fn borders<C: Connectivity>(&self, c: &C, range: Range<u32>, out: &mut Out<'_>) {
-        let (layout, kept) = (&self.layout, &self.kept);
-        let m = layout.m;
+        let (first, kept) = (self.layout.first_edge, &self.kept);
         let edges = c.edges();
-        let add = |a: Point, b: Point| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        let shaded = !kept.normals.is_empty();
         for e in range.start.min(edges)..range.end.min(edges) {
-            let h = c.edge_half_edge(e);
-            out.points[(layout.first_edge + e) as usize] = kept.anchors[h as usize][1];
-            if kept.sums.is_empty() {
-                continue;
-            }
-            let t = c.twin(h);
-            for p in 1..m {
-                let mut sum = kept.sums[h as usize * m + p];
-                if !is_boundary(t) {
-                    sum = add(sum, kept.sums[t as usize * m + m - p]);
-                }
-                out.normals[layout.border_id(c, h, p) as usize] = crate::refined::unit(sum);
+            let (h, id) = (c.edge_half_edge(e) as usize, (first + e) as usize);
+            out.points[id] = kept.points[h][1];
+            if shaded {
+                out.normals[id] = kept.normals[h][1];
             }
         }
         for v in range.start.max(edges)..range.end.max(edges) {
             let v = v - edges;
-            out.points[v as usize] = kept.anchors[c.vertex_half_edge(v) as usize][0];
-            if !kept.sums.is_empty() {
+            out.points[v as usize] = kept.points[c.vertex_half_edge(v) as usize][0];
+            if shaded {
                 let mut sum = [0.0; 3];
-                c.turn(v, |h| sum = add(sum, kept.sums[h as usize * m]));
+                c.turn(v, |h| (0..3).for_each(|k| sum[k] += kept.normals[h as usize][0][k]));
                 out.normals[v as usize] = crate::refined::unit(sum);
             }
         }
     }
 
-    /// Writes the points on boundaries that no patch owns.
+    /// Writes what is on boundaries and no patch owns.
     fn boundary<C: Connectivity>(&self, c: &C, out: &mut Out<'_>) {
         let (layout, m) = (&self.layout, self.layout.m);
-        for (&h, points) in self.rims.half_edges.iter().zip(self.rims.points.chunks_exact(m)) {
-            let (side, rank) = (h as usize % layout.sides, boundary_rank(c.twin(h)));
-            for p in (1..m).filter(|p| *p != m / 2 && layout.own[side * m + p][0] == NONE) {
-                out.points[layout.rim[side * m + p].id(rank) as usize] = points[p];
+        for (i, &h) in self.rims.half_edges.iter().enumerate() {
+            let (seam, rank) = layout.seam(c, h);
+            for p in (1..m).filter(|p| *p != m / 2 && seam.own[*p] == 0) {
+                let id = (seam.base[p] + seam.other[p] * rank) as usize;
+                out.points[id] = self.rims.points[i * m + p];
+                if !out.normals.is_empty() {
+                    out.normals[id] = self.rims.normals[i * m + p];
+                }
             }
         }
-    }
-}
-
-impl Layout {
-    /// The vertex at position `p`, 1 to m - 1, of half-edge `h` of the start level.
-    #[inline(always)]
-    fn border_id<C: Connectivity>(&self, c: &C, h: u32, p: usize) -> u32 {
-        let (sides, m) = (self.sides as u32, self.m);
-        if p == m / 2 {
-            return self.first_edge + c.edge(h);
-        }
-        let at = (h % sides) as usize * m + p;
-        let [base, per] = self.own[at];
-        if base != NONE {
-            return base + per * (h / sides);
-        }
-        let t = c.twin(h);
-        if is_boundary(t) {
-            return self.rim[at].id(boundary_rank(t));
-        }
-        let [base, per] = self.own[(t % sides) as usize * m + m - p];
-        base + per * (t / sides)
     }
 }
 
@@ -305,13 +286,12 @@ impl<'a> Target<'a> {
         let wanted = |wanted: bool, runs: &'_ [Run]| if wanted { runs.to_vec() } else { Vec::new() };
         let normals = wanted(!out.normals.is_empty(), &layout.runs);
         let faces = wanted(!out.corners.is_empty(), &layout.face_runs);
-        let sums = if normals.is_empty() { 0..0 } else { sides.start * layout.m..sides.end * layout.m };
+        let shaded = if normals.is_empty() { 0..0 } else { sides.clone() };
         Target {
             points: parts(out.points, layout.runs.iter().map(|run| part(run, 1))),
             normals: parts(out.normals, normals.iter().map(|run| part(run, 1))),
             corners: parts(out.corners, faces.iter().map(|run| part(run, layout.sides))),
-            anchors: &mut kept.anchors[sides],
-            sums: &mut kept.sums[sums],
+            anchors: [&mut kept.points[sides], &mut kept.normals[shaded]],
             rims,
         }
     }
@@ -361,7 +341,7 @@ impl Worker {
         let (sides, m) = (layout.sides, layout.m);
         let most = 24 + c.faces() as usize / 16;
         for q in patches.clone() {
-            if !self.ring.read(c, sides, q, tags) || !self.evaluate(m, old, most) {
+            if !self.ring.read(c, sides, q, tags) || !self.evaluate(layout, old, most, !target.normals.is_empty()) {
                 return false;
             }
             let i = (q - patches.start) as usize;
@@ -369,22 +349,31 @@ impl Worker {
                 let per = run.per as usize;
                 self.points.copy(layout.places_of(run), &mut part[i * per..(i + 1) * per]);
             }
-            let first = sides as u32 * q;
-            for side in 0..sides {
-                let border = &layout.border[side * m..(side + 1) * m];
-                target.anchors[sides * i + side] = [0, m / 2].map(|p| self.points.point(border[p]));
-                if is_boundary(c.twin(first + side as u32)) {
-                    target.rims.half_edges.push(first + side as u32);
-                    target.rims.points.extend(border.iter().map(|&place| self.points.point(place)));
-                }
-            }
-            if !target.sums.is_empty() {
-                grid::sum_normals(sides, m, &self.points, &mut self.normals);
-                self.normals.copy(&layout.border, &mut target.sums[i * sides * m..(i + 1) * sides * m]);
+            let shaded = !target.normals.is_empty();
+            if shaded {
+                grid::sum_normals(sides, m, &self.points, &mut self.rows, &mut self.normals);
+                let sums = layout.border.chunks_exact(m).map(|side| self.normals.point(side[0]));
+                target.anchors[1][sides * i..].iter_mut().zip(sums).for_each(|(anchor, sum)| anchor[0] = sum);
+                let size = (sides, m, layout.points);
+                grid::add_across(size, &layout.border, &self.points, &mut self.rows, &mut self.normals);
                 grid::normalise(&mut self.normals, layout.points);
                 for (run, part) in layout.runs.iter().zip(&mut target.normals) {
                     let per = run.per as usize;
                     self.normals.copy(layout.places_of(run), &mut part[i * per..(i + 1) * per]);
+                }
+            }
+            for (side, border) in layout.border.chunks_exact(m).enumerate() {
+                let (h, at) = (sides as u32 * q + side as u32, sides * i + side);
+                target.anchors[0][at] = [self.points.point(border[0]), self.points.point(border[m / 2])];
+                if shaded {
+                    target.anchors[1][at][1] = self.normals.point(border[m / 2]);
+                }
+                if is_boundary(c.twin(h)) {
+                    target.rims.half_edges.push(h);
+                    target.rims.points.extend(border.iter().map(|&place| self.points.point(place)));
+                    if shaded {
+                        target.rims.normals.extend(border.iter().map(|&place| self.normals.point(place)));
+                    }
                 }
             }
             if !target.corners.is_empty() {
@@ -396,11 +385,11 @@ impl Worker {
 
     /// The points of the patch whose ring was read; false if there are more than `most` tables already.
     #[inline(always)]
-    fn evaluate(&mut self, m: usize, old: &[Point], most: usize) -> bool {
+    fn evaluate(&mut self, layout: &Layout, old: &[Point], most: usize, shaded: bool) -> bool {
         let ring = &self.ring;
         if let (true, Some(spline), Some(controls)) = (ring.key.is_empty(), &self.spline, ring.controls.first_chunk()) {
             let controls: &[u32; 16] = controls;
-            spline.evaluate(m, &controls.map(|v| old[v as usize]), &mut self.points);
+            spline.evaluate(layout.m, &controls.map(|v| old[v as usize]), shaded, &mut self.points);
             return true;
         }
         let Some(number) = self.classes.number(&ring.key) else { return false };
@@ -413,7 +402,8 @@ impl Worker {
         let Some(table) = self.classes.get(number) else { return false };
         self.controls.clear();
         self.controls.extend(table.active.iter().map(|&k| old[ring.controls[usize::from(k)] as usize]));
-        table.evaluate(&self.controls, &mut self.points);
+        let strips = if shaded { layout.sides * (layout.m + 1) } else { 0 };
+        table.evaluate(&self.controls, grid::strips(layout.points) + strips, &mut self.points);
         true
     }
 
@@ -421,15 +411,15 @@ impl Worker {
     #[inline(always)]
     fn list<C: Connectivity>(&mut self, layout: &Layout, c: &C, q: u32, i: usize, out: &mut [&mut [u32]]) {
         let (sides, m) = (layout.sides, layout.m);
-        for side in 0..sides {
+        for (side, ids) in self.ids.chunks_exact_mut(m).enumerate() {
             let h = (sides as u32) * q + side as u32;
-            self.ids[side * m] = c.origin(h);
-            for p in 1..m {
-                self.ids[side * m + p] = layout.border_id(c, h, p);
-            }
+            let (seam, other) = layout.seam(c, h);
+            seam.ids(q, other, ids);
+            ids[0] = c.origin(h);
+            ids[m / 2] = layout.first_edge + c.edge(h);
         }
-        let mut on_border = &layout.on_border[..];
-        for (run, part) in layout.face_runs.iter().zip(out) {
+        let ids = &self.ids[..];
+        for ((run, part), on_border) in layout.face_runs.iter().zip(out).zip(&layout.on_border) {
             let per = run.per as usize * sides;
             let range = run.first..run.first + per;
             let part = &mut part[i * per..(i + 1) * per];
@@ -437,11 +427,8 @@ impl Worker {
             for (corner, (base, step)) in part.iter_mut().zip(template) {
                 *corner = base.wrapping_add(step.wrapping_mul(q));
             }
-            while let Some((&[at, slot], rest)) = on_border.split_first()
-                && (at as usize) < run.first + per
-            {
-                part[at as usize - run.first] = self.ids[slot as usize];
-                on_border = rest;
+            for &[at, slot] in on_border {
+                part[usize::from(at)] = ids[usize::from(slot)];
             }
         }
     }
