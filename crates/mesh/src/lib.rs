@@ -67,6 +67,7 @@ pub use crease::Creases;
 pub use fairing::Fairing;
 pub use limit::{Limit, LimitRule, limit};
 pub use mesh::{Mesh, Stats, TopologyError};
+pub use patch::{Drag, Moved};
 pub use plan::{Plan, Run};
 pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};

@@ -172,7 +172,7 @@ fn same_way(a: &Step, b: &Step) -> bool {
 }
 
 /// The steps of a plan that fits the budget.
-fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Vec<Step>, RefineError> {
+pub(crate) fn admit(mesh: &Mesh, plan: &Plan, budget: u64) -> Result<Vec<Step>, RefineError> {
     let fits = |p: &Option<Prediction>| p.is_some_and(|p| p.bytes <= budget && p.counts.corners < LARGEST);
     let predicted = predict(mesh, plan)?;
     if plan.level == 0 || fits(&predicted) {

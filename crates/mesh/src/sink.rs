@@ -50,6 +50,13 @@ pub struct Cursor {
     row: u32,
 }
 
+impl Cursor {
+    /// Before a row of a pass.
+    pub(crate) fn at(pass: u32, row: u32) -> Cursor {
+        Cursor { pass, row }
+    }
+}
+
 /// Decides which rows of which pass to run now.
 #[derive(Debug)]
 struct Slice<'a> {

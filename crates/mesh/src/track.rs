@@ -146,9 +146,7 @@ impl Track {
         if !uv {
             track.source = holes::sources(mesh, plan.rules.boundary);
             track.listed |= !track.source.is_empty();
-            // What lists its faces, carries colours or ties copies goes level by level.
-            let plain = !track.listed && track.wide.is_empty() && mesh.tied.is_empty();
-            track.patches_from = if FULL && plain { patch::start(plan, steps) } else { None };
+            track.patches_from = if FULL && !track.listed { patch::start(mesh, plan, steps) } else { None };
         }
         if !idle {
             track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);

@@ -129,6 +129,36 @@ fn buffers_are_used_again() {
     }
 }
 
+/// What is dragged is what is made anew, to the last bit, and only what was named has changed.
+#[test]
+fn dragging_is_making_anew() {
+    for (name, id) in
+        [("creature", "catmull-clark"), ("grid", "catmull-clark"), ("mouse", "catmull-clark"), ("pawn", "loop")]
+    {
+        let mut soup = (shape(name).unwrap().build)();
+        let mesh = build(&soup);
+        let plan = Plan::new(scheme(id).unwrap(), Boundary::default(), 4);
+        let mut drag = Drag::new(mesh.clone(), &plan, u64::MAX).unwrap().unwrap();
+        for v in [0u32, 7, 20] {
+            let to = drag.cage()[v as usize].map(|x| x + 0.25);
+            let before = (drag.points().to_vec(), drag.normals().to_vec());
+            let moved = drag.move_vertices(&[(v, to)]);
+            soup.positions[mesh.vertex_source[v as usize] as usize] = to;
+            let fresh = Job::new(build(&soup), plan.clone(), u64::MAX).unwrap().shaded().finish();
+            assert_eq!(drag.points(), fresh.points, "{name}, vertex {v}");
+            assert_eq!(Some(drag.normals()), fresh.known_normals.as_deref(), "{name}, vertex {v}");
+            assert_eq!(drag.corners(), fresh.faces.corners(), "{name}, vertex {v}");
+            let mut named = vec![false; fresh.points.len()];
+            moved.vertices.iter().for_each(|range| named[range.start as usize..range.end as usize].fill(true));
+            for (i, named) in named.iter().enumerate() {
+                let same = (before.0[i], before.1[i]) == (drag.points()[i], drag.normals()[i]);
+                assert!(same || *named, "{name}: {i} changed and was not named");
+            }
+            assert!(name != "creature" || moved.patches < 150, "{} patches", moved.patches);
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 

@@ -24,15 +24,18 @@
 //! the start level, 12 a point on its sides for normals, 4 bytes times the ring a point for each class.
 
 mod class;
+mod drag;
 mod grid;
 mod layout;
 mod ring;
 
+use crate::mesh::Mesh;
 use crate::plan::{Plan, Step};
-use crate::scheme::{Rules, Tags};
+use crate::scheme::{Boundary, Rules, Tags};
 use crate::split::{Level, on};
 use crate::topology::{Connectivity, Counts, is_boundary};
 use class::Classes;
+pub use drag::{Drag, Moved};
 use grid::{MOST_STEPS, Planes, Rows, Spline};
 use layout::{Layout, Run};
 use ring::Ring;
@@ -44,9 +47,12 @@ pub(crate) const DEEPEST: u32 = MOST_STEPS.ilog2();
 type Point = [f32; 3];
 
 /// The level that patches start at, if the last steps of a plan can be taken at once.
-pub(crate) fn start(plan: &Plan, steps: &[Step]) -> Option<u32> {
+pub(crate) fn start(mesh: &Mesh, plan: &Plan, steps: &[Step]) -> Option<u32> {
     let last = steps.last()?;
-    if !last.scheme.ring || plan.closes() {
+    // What carries colours, ties copies or leaves faces out goes level by level.
+    let all_shown = mesh.holes.is_empty() && (plan.rules.boundary != Boundary::None || mesh.counts().boundary == 0);
+    let plain = mesh.colors.is_empty() && mesh.tied.is_empty() && all_shown;
+    if !last.scheme.ring || plan.closes() || !plain {
         return None;
     }
     let same = |step: &Step| step.scheme == last.scheme && step.params == last.params && step.split == last.split;
@@ -216,6 +222,57 @@ impl Patches {
         }
         self.boundary(c, out);
         Progress::Done
+    }
+
+    /// Evaluates some patches of a level that is there again, by rising numbers, and appends the ids that they and their
+    /// borders have.
+    pub(crate) fn again(
+        &mut self,
+        level: &Level<'_>,
+        tags: &Tags<'_>,
+        old: &[Point],
+        out: &mut Out<'_>,
+        patches: &[u32],
+        ids: &mut Vec<Range<u32>>,
+    ) {
+        on!(level, c => self.again_on(*c, tags, old, out, patches, ids));
+    }
+
+    fn again_on<C: Connectivity>(
+        &mut self,
+        c: &C,
+        tags: &Tags<'_>,
+        old: &[Point],
+        out: &mut Out<'_>,
+        patches: &[u32],
+        ids: &mut Vec<Range<u32>>,
+    ) {
+        let sides = self.layout.sides as u32;
+        self.rims = Rims::default();
+        for group in patches.chunk_by(|a, b| a + 1 == *b) {
+            let range = group[0]..group[0] + group.len() as u32;
+            let Patches { layout, worker, kept, rims, .. } = self;
+            let mut target = Target::cut(layout, range.clone(), out, (kept, rims));
+            // Their rings have been met before.
+            worker.run(layout, (c, tags, old), range.clone(), &mut target);
+            ids.extend(
+                self.layout.runs.iter().map(|run| run.base + run.per * range.start..run.base + run.per * range.end),
+            );
+        }
+        let edges = c.edges();
+        for h in patches.iter().flat_map(|&q| sides * q..sides * (q + 1)) {
+            let (e, v) = (c.edge(h), c.origin(h));
+            self.borders(c, e..e + 1, out);
+            self.borders(c, edges + v..edges + v + 1, out);
+            ids.extend([v..v + 1, self.layout.first_edge + e..self.layout.first_edge + e + 1]);
+        }
+        self.boundary(c, out);
+        let m = self.layout.m;
+        for &h in &self.rims.half_edges {
+            let (seam, rank) = self.layout.seam(c, h);
+            let nobodys = (1..m).filter(|p| *p != m / 2 && seam.own[*p] == 0);
+            ids.extend(nobodys.map(|p| seam.base[p] + seam.other[p] * rank).map(|id| id..id + 1));
+        }
     }
 
     /// Puts together what patches left for edges and vertices: edges first, then vertices.
