@@ -1,4 +1,4 @@
-//! The meshes of the table, all closed and all made by code.
+//! The cages that benchmarks refine, all closed and all made by code, with the same bits natively and as WebAssembly.
 //!
 //! ```text
 //!   torus(n)   n x n quads               mixed(n)   a torus whose rows take turns:
@@ -7,10 +7,23 @@
 //! ```
 //!
 //! Cost: linear. Limit: sizes are small enough for 32-bit indices; nothing is checked.
+#![expect(clippy::indexing_slicing, reason = "every index is made here, for the array that it is used on")]
 
-use limn_mesh::Soup;
-use std::collections::HashMap;
+use limn_mesh::{Soup, shape, triangulate_soup};
 use std::f64::consts::TAU;
+
+/// The cage of a name, whose size is `n`: `torus` and `triangles` (n by n cells), `sphere` (8 n^2 triangles), and the built-in models
+/// by their names, in triangles after `-triangles`. Empty if there is none of that name.
+pub fn cage(name: &str, n: u32) -> Soup {
+    let model = |name: &str| shape(name).map(|shape| (shape.build)()).unwrap_or_default();
+    match (name, name.strip_suffix("-triangles")) {
+        ("torus", _) => torus(n, n),
+        ("triangles", _) => torus_triangles(n, n),
+        ("sphere", _) => sphere(n as i32),
+        (_, Some(name)) => triangulate_soup(&model(name)).0,
+        _ => model(name),
+    }
+}
 
 /// A ring of `n` by `m` quads, every vertex of valence 4. Radii 1 and 0.4.
 pub fn torus(n: u32, m: u32) -> Soup {
@@ -61,18 +74,22 @@ pub fn mixed(n: u32, m: u32) -> Soup {
 
 /// A unit sphere of `8 n^2` triangles: the lattice points with |x| + |y| + |z| = n, pushed out. Six of valence 4.
 pub fn sphere(n: i32) -> Soup {
-    let mut ids = HashMap::new();
-    let mut positions = Vec::new();
+    // One place for every x and y, and for either side of the equator.
+    let side = 2 * n + 1;
+    let mut ids = vec![u32::MAX; 2 * (side * side) as usize];
+    let mut positions: Vec<[f32; 3]> = Vec::new();
     let mut faces = Vec::new();
     for octant in 0..8 {
         let sign = [1 - 2 * (octant & 1), 1 - (octant & 2), 1 - (octant & 4) / 2];
         let mut id = |i: i32, j: i32| {
             let p = [sign[0] * i, sign[1] * j, sign[2] * (n - i - j)];
-            *ids.entry(p).or_insert_with(|| {
+            let id = &mut ids[(2 * ((p[0] + n) * side + p[1] + n) + i32::from(p[2] < 0)) as usize];
+            if *id == u32::MAX {
+                *id = positions.len() as u32;
                 let length = p.iter().map(|x| f64::from(x * x)).sum::<f64>().sqrt();
                 positions.push(p.map(|x| (f64::from(x) / length) as f32));
-                positions.len() as u32 - 1
-            })
+            }
+            *id
         };
         let turned = sign.iter().product::<i32>() < 0;
         let mut push = |[a, b, c]: [u32; 3]| faces.push(if turned { [a, c, b] } else { [a, b, c] });
@@ -125,8 +142,8 @@ fn ring(n: u32, m: u32) -> Vec<[f32; 3]> {
     cells(n, m)
         .map(|(i, j)| {
             let (u, v) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(m));
-            let r = 1.0 + 0.4 * v.cos();
-            [r * u.cos(), 0.4 * v.sin(), -r * u.sin()].map(|x| x as f32)
+            let r = 1.0 + 0.4 * libm::cos(v);
+            [r * libm::cos(u), 0.4 * libm::sin(v), -r * libm::sin(u)].map(|x| x as f32)
         })
         .collect()
 }
