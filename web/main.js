@@ -238,4 +238,5 @@ try {
 }
 new ResizeObserver(sendSize).observe(byId("dock"));
 
-engine.start(location.hash);
+if (location.search === "?bench") import("./bench.js");
+else engine.start(location.hash);

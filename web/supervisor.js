@@ -47,8 +47,8 @@ export class Supervisor {
     this.receive = receive;
     this.size = size;
     this.theme = theme;
-    const forced = new URLSearchParams(location.search).get("renderer");
-    this.#renderer = forced === "webgpu" ? "webgpu" : forced?.startsWith("webgl") ? "webgl2" : null;
+    const asked = location.search;
+    this.#renderer = /=webgpu/.test(asked) ? "webgpu" : /=webgl/.test(asked) ? "webgl2" : null;
     setInterval(() => this.#listen(), 3_000);
   }
 
@@ -103,7 +103,7 @@ export class Supervisor {
         this.#replace(this.#settled || location.hash, "");
       }, CANCEL_PATIENCE);
     }
-    if (this.engine) this.engine.postMessage(message);
+    this.engine?.postMessage(message);
   }
 
   /** @param {FromEngine} message */

@@ -61,7 +61,7 @@ pub fn page(report: &Report) -> String {
 /// Engines with rows, by the order in which they came: word and name.
 fn engines(report: &Report) -> Vec<(&str, &str)> {
     let known = unique(report.rows.iter().map(|row| row.engine.as_str()));
-    let name = |id: &str| report.rows.iter().find(|row| row.engine == id).map_or("", |row| row.name.trim());
+    let name = |id: &str| report.rows.iter().find(|row| row.engine == id).map_or("", |row| row.name.as_str());
     known.into_iter().map(|id| (id, name(id))).collect()
 }
 
@@ -88,7 +88,7 @@ fn facts(report: &Report) -> String {
             .rows
             .iter()
             .filter(|r| r.measured_bandwidth != report.measured_bandwidth)
-            .map(|r| format!("; {:.1} GB/s for {}", r.measured_bandwidth / 1e9, r.name.trim())),
+            .map(|r| format!("; {:.1} GB/s for {}", r.measured_bandwidth / 1e9, r.name)),
     );
     let stores = stores + &elsewhere.concat();
     let mut out = String::from("<dl>\n");
@@ -123,7 +123,7 @@ fn facts(report: &Report) -> String {
 fn legend(engines: &[(&str, &str)]) -> String {
     let mut out = String::from("<p class=\"legend\">");
     for (id, name) in engines {
-        let (class, name) = (class(engines, id), escaped(label(id, name)));
+        let (class, name) = (class(engines, id), escaped(name));
         _ = write!(
             out,
             "<span><svg viewBox=\"0 0 12 12\"><rect class=\"{class}\" width=\"12\" height=\"12\"/></svg>{name}</span>"
@@ -134,17 +134,12 @@ fn legend(engines: &[(&str, &str)]) -> String {
     out
 }
 
-/// A name that stands alone.
-fn label<'a>(id: &str, name: &'a str) -> &'a str {
-    if id == crate::engines::REFINE { "Limn, mesh built" } else { name }
-}
-
 fn bar_panel(engines: &[(&str, &str)], rows: &[&Row], range: [f64; 2]) -> String {
     let Some(first) = rows.iter().find(|row| row.engine == LIMN).or(rows.first()) else { return String::new() };
     let title = format!("{}, level {}: {} faces", first.mesh, first.level, grouped(first.faces));
     let bar = |row: &&Row| Bar {
         class: class(engines, &row.engine),
-        label: label(&row.engine, row.name.trim()).to_owned(),
+        label: row.name.clone(),
         value: row.ns_per_face,
         mark: if row.other_rule { "*".to_owned() } else { String::new() },
     };
@@ -156,7 +151,7 @@ fn bar_panel(engines: &[(&str, &str)], rows: &[&Row], range: [f64; 2]) -> String
 fn curve_panel(engines: &[(&str, &str)], title: &str, rows: &[&Row]) -> String {
     let curve = |(id, name): &(&str, &str)| Curve {
         class: class(engines, id),
-        label: label(id, name).to_owned(),
+        label: name.to_string(),
         points: rows.iter().filter(|r| r.engine == *id).map(|r| [r.faces as f64, r.median_ms]).collect(),
     };
     let all: Vec<Curve> = engines.iter().map(curve).collect();
@@ -195,7 +190,7 @@ fn all(report: &Report) -> String {
             None => ["–", "–"].map(str::to_owned),
         };
         let ratio = row.times_limn.map_or("–".to_owned(), figures);
-        let name = label(&row.engine, row.name.trim());
+        let name = row.name.as_str();
         let words = [&row.scheme, &row.mesh].map(|word| format!("<td>{}</td>", escaped(word))).concat();
         let cells =
             [figures(row.median_ms), figures(row.ns_per_face), figures(row.limit_ns_per_face), ratio, peak, each];

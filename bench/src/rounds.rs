@@ -24,7 +24,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const TOLERANCE: f64 = 1e-5;
 /// Up to so many faces every point is compared.
 const COMPARED: usize = 2_000_000;
-/// A sample lasts at least so many seconds.
+/// A sample lasts at least so many seconds; ten times as many in a browser, whose clock is coarse.
 const SAMPLE: f64 = 0.002;
 /// An engine without a figure for the scheme is tried on fewer faces first where there are more than this.
 const TRIED: usize = 100_000;
@@ -77,7 +77,7 @@ impl Bench {
 
     /// Names of the engines in their order.
     pub fn names(&self) -> Vec<(String, String)> {
-        self.engines.iter().map(|e| (e.id().to_owned(), e.name().trim().to_owned())).collect()
+        self.engines.iter().map(|e| (e.id().to_owned(), e.name().to_owned())).collect()
     }
 
     /// Runs a job on every engine that takes it; the rows, Limn's first, are kept in the report as well.
@@ -97,7 +97,7 @@ impl Bench {
         let mut sentences = Vec::new();
         let mut entries: Vec<Entry<'_>> = Vec::new();
         for engine in &mut self.engines {
-            let (id, name) = (engine.id().to_owned(), engine.name().trim().to_owned());
+            let (id, name) = (engine.id().to_owned(), engine.name().to_owned());
             let key = (id.clone(), job.id.to_owned());
             let (seconds, bytes) = self.costs.get(&key).copied().unwrap_or_default();
             let (seconds, bytes) = (seconds * faces as f64, bytes * faces as f64);
@@ -113,7 +113,6 @@ impl Bench {
             }
             let differs = engine.differs(job.id);
             let clock = engine.clock().to_owned();
-            let engine_name = engine.name().to_owned();
             let bandwidth = engine.bandwidth().unwrap_or(self.report.measured_bandwidth);
             let mut run = match engine.prepare(job) {
                 Ok(run) => run,
@@ -139,7 +138,7 @@ impl Bench {
             let row = Row {
                 series: series.to_owned(),
                 engine: id,
-                name: engine_name,
+                name: name.clone(),
                 scheme: job.id.to_owned(),
                 mesh: mesh.to_owned(),
                 cage_faces: job.counts.len() as u64,
@@ -157,7 +156,8 @@ impl Bench {
                 other_rule: matches!(differs, Some(Differs::Rule(_))),
                 machine: machine.clone(),
             };
-            let repeats = (SAMPLE / first.max(1e-7)).ceil().clamp(1.0, 10_000.0) as u32;
+            let sample = if row.clock == "wall" { 10.0 * SAMPLE } else { SAMPLE };
+            let repeats = (sample / first.max(1e-7)).ceil().clamp(1.0, 10_000.0) as u32;
             entries.push(Entry { row, run, repeats, times: Vec::new() });
         }
         drop(reference);

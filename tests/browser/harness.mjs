@@ -121,18 +121,18 @@ function chrome() {
   return found;
 }
 
-/** A headless Chromium that has WebGPU and WebGL2, both drawn in software. */
-export function launch() {
+/**
+ * A headless Chromium that has WebGPU and WebGL2, both drawn in software; or by the machine's own adapter, which may not be there.
+ * @param {{ software?: boolean }} [options]
+ */
+export function launch({ software = true } = {}) {
   return chromium.launch({
     executablePath: chrome(),
     args: [
       "--no-sandbox",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
+      ...(software ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader"] : []),
       "--enable-unsafe-webgpu",
       "--enable-features=Vulkan,WebGPU",
-      "--use-webgpu-adapter=swiftshader",
-      "--use-vulkan=swiftshader",
       "--disable-quic",
       "--no-first-run",
       "--disable-background-networking",

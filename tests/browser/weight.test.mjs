@@ -22,7 +22,7 @@ describe("the page's weight", { skip: QUICK && "a quick build is not what ships"
         const paths = site.sent.map(({ path }) => path);
         assert.equal(new Set(paths).size, paths.length, "nothing is fetched twice");
         assert.deepEqual(site.sent.filter(({ status }) => status !== 200), [], "nothing is missing");
-        assert.deepEqual(paths.filter((path) => /^\/pkg\/(files|kernel)\//.test(path)), [], "file formats and rare schemes come later");
+        assert.deepEqual(paths.filter((path) => /^\/pkg\/(files|kernel|trial)\//.test(path)), [], "file formats, rare schemes and benchmarks come later");
         assert.ok(total <= BUDGET[renderer], `a first visit transfers ${total} bytes, ${BUDGET[renderer]} are allowed`);
       } finally {
         await browser.close();

@@ -33,7 +33,7 @@ pub struct Path {
 /// All of them. The first is what the others are compared with.
 pub const PATHS: [Path; 2] = [
     Path { id: LIMN, name: "Limn", builds: true, make: general },
-    Path { id: REFINE, name: "  refining alone", builds: false, make: general },
+    Path { id: REFINE, name: "Limn, mesh built", builds: false, make: general },
 ];
 
 fn general(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {

@@ -14,6 +14,7 @@
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
 mod about;
+#[cfg(feature = "trial")]
 pub mod trial;
 
 use std::sync::Arc;

@@ -10,6 +10,7 @@ use crate::{paths, toolchain};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Builds the modules as they ship and fills `dist/`.
 pub fn run(arguments: Arguments) -> Result<()> {
@@ -22,14 +23,19 @@ pub fn run(arguments: Arguments) -> Result<()> {
 
 /// Builds the modules and fills `site` with them and the page.
 pub fn build(profile: Profile, site: &Path) -> Result<()> {
-    for module in Module::ALL {
-        wasm::build(module, profile)?;
-    }
-    assemble(profile, site)
+    build_with(profile, site, &Module::ALL)
 }
 
-/// Copies the page and the built modules into a fresh folder, which takes the old one's place when it is whole.
-pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
+/// The same with some of the modules, for a page that is asked for no others.
+pub fn build_with(profile: Profile, site: &Path, modules: &[Module]) -> Result<()> {
+    for &module in modules {
+        wasm::build(module, profile)?;
+    }
+    assemble(profile, site, modules)
+}
+
+/// Copies the page and built modules into a fresh folder, which takes the old one's place when it is whole.
+pub fn assemble(profile: Profile, dist: &Path, modules: &[Module]) -> Result<()> {
     let fresh = paths::root().join("target/site.new");
     remove(&fresh)?;
     copy(&paths::root().join("index.html"), &fresh.join("index.html"))?;
@@ -40,7 +46,7 @@ pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
             copy(&from, &fresh.join(name))?;
         }
     }
-    for module in Module::ALL {
+    for module in modules {
         for name in module.files() {
             copy(&module.package(profile).join(&name), &fresh.join("pkg").join(module.id()).join(name))?;
         }
@@ -55,13 +61,18 @@ pub fn assemble(profile: Profile, dist: &Path) -> Result<()> {
 /// Takes comments, indentation and long names out of every script and style sheet below a folder, file by file: modules stay
 /// the modules that the page imports.
 fn minify(site: &Path) -> Result<()> {
-    toolchain::ensure_packages()?;
-    let name = if cfg!(windows) { "esbuild.cmd" } else { "esbuild" };
-    let mut esbuild = process::program(paths::root().join("node_modules/.bin").join(name));
+    let mut esbuild = esbuild()?;
     esbuild.args(["--minify", "--charset=utf8", "--log-level=warning", "--allow-overwrite"]);
     esbuild.arg(format!("--outdir={0}", site.display())).arg(format!("--outbase={0}", site.display()));
     let text = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "js" || extension == "css");
     process::run(esbuild.args(files(site)?.into_iter().filter(text)))
+}
+
+/// The program that shortens and bundles scripts.
+pub fn esbuild() -> Result<Command> {
+    toolchain::ensure_packages()?;
+    let name = if cfg!(windows) { "esbuild.cmd" } else { "esbuild" };
+    Ok(process::program(paths::root().join("node_modules/.bin").join(name)))
 }
 
 fn remove(folder: &Path) -> Result<()> {

@@ -44,8 +44,14 @@ Usage: cargo xtask <command> [options]
             --filter TEXT    only tests whose names contain this
             --quick          the page's tests on quickly built modules, without the budget of its weight
   tidy    rustfmt, clippy, tsc and the house rules
-  bench   the kernel beside the other Rust crates for subdivision, in one table
+  bench [WORD]
+          Limn beside other libraries for subdivision, natively and in Chromium; docs/benchmarks gets the page.
+          A word selects rows by scheme, cage and level, and writes no page
+            --quick          fewer rows and rounds, within three minutes; its page goes to target/bench/page
+            --json           one JSON object a row, and nothing else
             --fresh          on freshly mapped memory
+            --native         without the browser
+            --page           the page once more, of docs/benchmarks/results.json
             --levels         the kernel alone, level by level
             --wasm           the same, and once more as WebAssembly under Node
   screenshots

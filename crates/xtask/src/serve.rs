@@ -7,6 +7,7 @@
 //! /pkg/files/...    the file formats  the same; built behind the first page
 //! /pkg/kernel/...   rare schemes      the same
 //! /pkg/webgl/...    the fallback      the same
+//! /pkg/trial/...    for ?bench        the same
 //! ```
 //!
 //! The WebGPU module is built first and the address printed as soon as it is there; the fallback follows in the
@@ -30,7 +31,7 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
     let port = arguments.value("--port")?.map(|port| port.parse()).transpose();
     let port = port.map_err(|_| anyhow::anyhow!("--port takes a number from 0 to 65535"))?;
     let modules = match arguments.value("--only")? {
-        Some(id) => vec![Module::parse(&id)?, Module::Files, Module::Kernel],
+        Some(id) => vec![Module::parse(&id)?, Module::Files, Module::Kernel, Module::Trial],
         None => Module::ALL.to_vec(),
     };
     arguments.finish()?;
@@ -52,7 +53,8 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
         }
         if profile == Profile::Dist
             && modules.len() == Module::ALL.len()
-            && let Err(error) = dist::assemble(profile, &paths::dist()).and_then(|()| dist::report(&paths::dist()))
+            && let Err(error) =
+                dist::assemble(profile, &paths::dist(), &Module::ALL).and_then(|()| dist::report(&paths::dist()))
         {
             eprintln!("\nxtask: {error:#}");
         }

@@ -72,9 +72,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
         say(format!("clippy on the {} module", module.id()));
         let mut clippy = process::cargo();
         clippy.args(["clippy", "--no-deps", "--package", module.crate_name(), "--lib", "--target", WASM]);
-        if module.is_engine() {
-            clippy.args(["--no-default-features", "--features", module.id()]);
-        }
+        clippy.args(module.features());
         // One folder for all: what they share is checked once, and nothing is linked.
         clippy.arg("--target-dir").arg(paths::root().join("target/wasm-clippy"));
         clippy.env("RUSTFLAGS", toolchain::wasm_flags()).args(["--", "-D", "warnings"]);

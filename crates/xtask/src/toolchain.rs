@@ -14,6 +14,9 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 /// The target that tests and benchmarks are built for when they run as WebAssembly under Node.
 pub const WASI: &str = "wasm32-wasip1";
 
+/// What a Chromium may be called.
+const CHROMIUMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
 /// Vector instructions are in every browser of the last years, and the compiler uses them only where the bits stay.
 /// Messages of panics name source files: without the builder's own folders, so that what ships is the same wherever it
 /// is built.
@@ -96,7 +99,6 @@ pub fn ensure_packages() -> Result<()> {
 
 /// Finds a Chromium: `CHROME`, then the PATH, then apt where that is allowed.
 pub fn ensure_chromium() -> Result<PathBuf> {
-    const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
     if let Some(chrome) = std::env::var_os("CHROME").filter(|chrome| !chrome.is_empty()) {
         let path = PathBuf::from(&chrome);
         let found = if path.components().count() > 1 { path.is_file().then_some(path) } else { None };
@@ -104,18 +106,24 @@ pub fn ensure_chromium() -> Result<PathBuf> {
             .or_else(|| process::on_path(&[&chrome.to_string_lossy()]))
             .with_context(|| format!("CHROME names {}, which is not there", chrome.to_string_lossy()));
     }
-    if let Some(path) = process::on_path(&NAMES) {
+    if let Some(path) = process::on_path(&CHROMIUMS) {
         return Ok(path);
     }
     if may_install()
         && install(&["chromium"])?
-        && let Some(path) = process::on_path(&NAMES)
+        && let Some(path) = process::on_path(&CHROMIUMS)
     {
         return Ok(path);
     }
     bail!(
         "the page's tests need Chromium: install it (Debian: apt install chromium) or set CHROME to a Chrome's or Chromium's path"
     )
+}
+
+/// A Chromium, where one is already there.
+pub fn chromium() -> Option<PathBuf> {
+    let named = std::env::var_os("CHROME").map(PathBuf::from).filter(|path| path.is_file());
+    named.or_else(|| process::on_path(&CHROMIUMS))
 }
 
 /// Sees to it that there is a Vulkan driver to draw with: Mesa's software driver is enough.

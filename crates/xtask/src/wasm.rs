@@ -1,4 +1,4 @@
-//! Building the wasm modules: the engine, twice, the files' readers and writers, and the kernel with every scheme.
+//! Building the wasm modules: the engine, twice, the files' readers and writers, and the kernel with every scheme, twice.
 //!
 //! ```text
 //! crates/engine ──cargo rustc──► target/wasm-webgpu/…/limn_engine.wasm ──wasm-bindgen──► target/wasm-webgpu/pkg-serve/
@@ -33,11 +33,13 @@ pub enum Module {
     Files,
     /// Refines by every scheme: loaded when one is chosen that the engine has no rules of.
     Kernel,
+    /// The same with what benchmarks need: loaded by `?bench` alone.
+    Trial,
 }
 
 impl Module {
     /// All, the one that most visitors load first.
-    pub const ALL: [Self; 4] = [Self::WebGpu, Self::Files, Self::Kernel, Self::WebGl];
+    pub const ALL: [Self; 5] = [Self::WebGpu, Self::Files, Self::Kernel, Self::WebGl, Self::Trial];
 
     /// Whether it is an engine: what draws, and what a first visit loads one of.
     pub fn is_engine(self) -> bool {
@@ -49,7 +51,17 @@ impl Module {
         match self {
             Self::WebGpu | Self::WebGl => "limn-engine",
             Self::Files => "limn-files",
-            Self::Kernel => "limn-kernel",
+            Self::Kernel | Self::Trial => "limn-kernel",
+        }
+    }
+
+    /// What cargo is told of its features.
+    pub fn features(self) -> &'static [&'static str] {
+        match self {
+            Self::WebGpu => &["--no-default-features", "--features", "webgpu"],
+            Self::WebGl => &["--no-default-features", "--features", "webgl"],
+            Self::Kernel => &["--no-default-features"],
+            Self::Files | Self::Trial => &[],
         }
     }
 
@@ -59,13 +71,14 @@ impl Module {
         [format!("{stem}.js"), format!("{stem}_bg.wasm")]
     }
 
-    /// Its name in URLs, folders and, for an engine, cargo features.
+    /// Its name in URLs and folders.
     pub fn id(self) -> &'static str {
         match self {
             Self::WebGpu => "webgpu",
             Self::WebGl => "webgl",
             Self::Files => "files",
             Self::Kernel => "kernel",
+            Self::Trial => "trial",
         }
     }
 
@@ -74,7 +87,7 @@ impl Module {
         Self::ALL
             .into_iter()
             .find(|module| module.id() == id)
-            .with_context(|| format!("`{id}` is no module: webgpu, webgl, files or kernel"))
+            .with_context(|| format!("`{id}` is no module: webgpu, webgl, files, kernel or trial"))
     }
 
     /// The target folder that it has for itself.
@@ -139,9 +152,7 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     // `cargo rustc --crate-type`: the library is also an rlib (clippy and native tests want one), and cargo skips
     // link-time optimisation for a library that is both.
     command.args(["rustc", "--package", module.crate_name(), "--lib", "--crate-type", "cdylib"]);
-    if module.is_engine() {
-        command.args(["--no-default-features", "--features", module.id()]);
-    }
+    command.args(module.features());
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
     if module == Module::Files {
         command.args(["--config", READS_FAST]);

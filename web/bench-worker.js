@@ -1,0 +1,234 @@
+// @ts-check
+// The engines of the benchmark's browser half, in a thread of their own: one worker runs one engine on one input, so that its
+// memory begins small and goes with it.
+//
+//   open engine -> prepare input, scheme, level -> run n times -> seconds;  peak, size, surface
+//
+// A further engine (a compute path on WebGPU) is one entry of ENGINES; its `run` may be asynchronous.
+
+/** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array, ends: Uint32Array, sharpness: Float32Array }} Cage */
+/** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array }} Surface */
+/**
+ * One engine with its input. `prepare` throws where the engine has no such scheme; `run` goes from indexed faces to a level.
+ * @typedef {{ prepare(cage: Cage, scheme: string, level: number): void, run(): void | Promise<void>, surface(): Surface | Promise<Surface>,
+ *   faces(): number, peak(): number | null }} Engine
+ */
+/**
+ * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
+ * @typedef {{ run(scheme: string, level: number, first?: number): void, clear(): void, faces(): number, positions(): Float32Array,
+ *   face_counts(): Uint32Array, face_corners(): Uint32Array, differs(p: Float32Array, n: Uint32Array, c: Uint32Array, tolerance: number): string }} Trial
+ * @typedef {{ Trial: { cage(name: string, n: number): Trial, of(p: Float32Array, n: Uint32Array, c: Uint32Array, ends: Uint32Array, sharpness: Float32Array): Trial },
+ *   Stores: new (bytes: number) => { store(n: number): number } }} Kernel
+ */
+
+/** Points are as far apart as this for a library that takes hundredths for one point: a power of two, so that no bit is lost. */
+const SCALE = 4096;
+/** Bytes that plain stores are measured on. */
+const STORED = 1 << 26;
+
+/** @returns {Promise<{ kernel: Kernel, memory: WebAssembly.Memory }>} */
+async function load() {
+  const base = new URL("../pkg/trial/limn_kernel", import.meta.url).href;
+  const [module, wasm] = await Promise.all([import(`${base}.js`), fetch(`${base}_bg.wasm`)]);
+  const { memory } = await module.default({ module_or_path: wasm });
+  return { kernel: module, memory };
+}
+
+/** Limn on the CPU. */
+class Wasm {
+  #trial = /** @type {Trial | null} */ (null);
+  #call = () => {};
+  #before = 0;
+  #grown = -1;
+
+  /** @param {Kernel} kernel @param {WebAssembly.Memory} memory */
+  constructor(kernel, memory) {
+    this.kernel = kernel;
+    this.memory = memory;
+  }
+
+  static async open() {
+    const { kernel, memory } = await load();
+    return new Wasm(kernel, memory);
+  }
+
+  get trial() {
+    if (!this.#trial) throw new Error("there is no cage");
+    return this.#trial;
+  }
+
+  /** @param {Cage} cage @param {string} scheme @param {number} level */
+  prepare({ positions, counts, corners, ends, sharpness }, scheme, level) {
+    this.#trial = this.kernel.Trial.of(positions, counts, corners, ends, sharpness);
+    this.#before = this.memory.buffer.byteLength;
+    this.#grown = -1;
+    this.#call = () => this.trial.run(scheme, level);
+  }
+
+  run() {
+    this.#call();
+    // After the first run: handing the result over takes memory too.
+    if (this.#grown < 0) this.#grown = this.memory.buffer.byteLength - this.#before;
+  }
+
+  surface() {
+    return { positions: this.trial.positions(), counts: this.trial.face_counts(), corners: this.trial.face_corners() };
+  }
+
+  faces() {
+    return this.trial.faces();
+  }
+
+  /** By how much the first run made the module's memory grow. */
+  peak() {
+    return this.#grown < 0 ? null : this.#grown;
+  }
+
+  /** A cage by name: crates/kernel/src/trial/cages.rs. @param {string} name @param {number} n @returns {Cage} */
+  cage(name, n) {
+    this.#trial = this.kernel.Trial.cage(name, n);
+    return { ...this.surface(), ends: new Uint32Array(), sharpness: new Float32Array() };
+  }
+
+  /** How another engine's result differs from the last run's, in a sentence. @param {Surface} other @param {number} tolerance */
+  differs({ positions, counts, corners }, tolerance) {
+    return this.trial.differs(positions, counts, corners, tolerance);
+  }
+
+  /** Bytes a second that plain stores reach: the middle of eleven. */
+  bandwidth() {
+    const memory = new this.kernel.Stores(STORED);
+    const times = Array.from({ length: 12 }, (_, k) => {
+      const start = performance.now();
+      memory.store(k);
+      return performance.now() - start;
+    });
+    const sorted = times.slice(1).sort((a, b) => a - b);
+    return (STORED / (sorted[5] ?? 1)) * 1e3;
+  }
+}
+
+/** three-subdivide, where whoever serves the page put it. Loop on triangles; it takes and makes three corners a triangle. */
+class Three {
+  /** @type {any} */ #input = null;
+  /** @type {any} */ #made = null;
+  #level = 0;
+
+  /** @param {any} three */
+  constructor(three) {
+    this.three = three;
+  }
+
+  static async open() {
+    return new Three(await import(new URL("../peers/three-subdivide.js", import.meta.url).href));
+  }
+
+  /** @param {Cage} cage @param {string} scheme @param {number} level */
+  prepare({ positions, counts, corners, sharpness }, scheme, level) {
+    if (scheme !== "loop" || sharpness.length || counts.some((n) => n !== 3)) throw new Error("it has Loop on triangles");
+    this.#input = new this.three.BufferGeometry();
+    this.#input.setAttribute("position", new this.three.BufferAttribute(positions.map((x) => x * SCALE), 3));
+    this.#input.setIndex(new this.three.BufferAttribute(corners, 1));
+    this.#level = level;
+    // It wants normals; they are made once, off the clock.
+    this.#input.computeVertexNormals();
+  }
+
+  run() {
+    this.#made = null;
+    this.#made = this.three.LoopSubdivision.modify(this.#input, this.#level, { split: false });
+  }
+
+  /** Every triangle has corners of its own: those in one place are one vertex. */
+  surface() {
+    const made = this.#made.index ? this.#made.toNonIndexed() : this.#made;
+    const soup = /** @type {Float32Array} */ (made.getAttribute("position").array);
+    const bits = new Uint32Array(soup.buffer, soup.byteOffset, soup.length);
+    const count = soup.length / 3;
+    const slots = new Uint32Array(1 << Math.ceil(Math.log2(count + 1) + 1));
+    const corners = new Uint32Array(count);
+    const positions = new Float32Array(soup.length);
+    let vertices = 0;
+    for (let i = 0; i < count; i += 1) {
+      const [x = 0, y = 0, z = 0] = [bits[3 * i], bits[3 * i + 1], bits[3 * i + 2]];
+      let at = (Math.imul(x, 0x9e3779b1) ^ Math.imul(y, 0x85ebca6b) ^ Math.imul(z, 0xc2b2ae35)) >>> 0;
+      at = Math.imul(at ^ (at >>> 15), 0x2c1b3c6d) >>> 0;
+      for (;;) {
+        at &= slots.length - 1;
+        const first = slots[at] ?? 0;
+        if (!first) {
+          slots[at] = i + 1;
+          corners[i] = vertices;
+          for (let k = 0; k < 3; k += 1) positions[3 * vertices + k] = (soup[3 * i + k] ?? 0) / SCALE;
+          vertices += 1;
+          break;
+        }
+        const j = 3 * (first - 1);
+        if (bits[j] === x && bits[j + 1] === y && bits[j + 2] === z) {
+          corners[i] = corners[first - 1] ?? 0;
+          break;
+        }
+        at += 1;
+      }
+    }
+    return { positions: positions.slice(0, 3 * vertices), counts: new Uint32Array(count / 3).fill(3), corners };
+  }
+
+  faces() {
+    return this.#made.index ? this.#made.index.count / 3 : this.#made.getAttribute("position").count / 3;
+  }
+
+  /** JavaScript's heap does not tell. */
+  peak() {
+    return null;
+  }
+}
+
+/** @type {Record<string, () => Promise<Engine>>} */
+const ENGINES = { "limn-wasm": Wasm.open, "three-subdivide": Three.open };
+
+/** @type {Engine | null} */
+let engine = null;
+const present = () => {
+  if (!engine) throw new Error("no engine is open");
+  return engine;
+};
+const wasm = () => {
+  if (!(engine instanceof Wasm)) throw new Error("only Limn's module can");
+  return engine;
+};
+
+/** What can be asked. @type {Record<string, (...args: any[]) => unknown>} */
+const calls = {
+  open: async (/** @type {string} */ id) => {
+    const make = ENGINES[id];
+    if (!make) throw new Error(`there is no engine ${id}`);
+    engine = await make();
+  },
+  prepare: (/** @type {Cage} */ cage, /** @type {string} */ scheme, /** @type {number} */ level) => present().prepare(cage, scheme, level),
+  /** Seconds of so many runs. */
+  run: async (/** @type {number} */ repeats) => {
+    const start = performance.now();
+    for (let i = 0; i < repeats; i += 1) {
+      const running = present().run();
+      if (running) await running;
+    }
+    return (performance.now() - start) / 1e3;
+  },
+  surface: () => present().surface(),
+  faces: () => present().faces(),
+  peak: () => present().peak(),
+  cage: (/** @type {string} */ name, /** @type {number} */ n) => wasm().cage(name, n),
+  differs: (/** @type {Surface} */ other, /** @type {number} */ tolerance) => wasm().differs(other, tolerance),
+  bandwidth: () => wasm().bandwidth(),
+};
+
+addEventListener("message", async ({ data: { id, call, args } }) => {
+  try {
+    const found = calls[call];
+    if (!found) throw new Error(`there is no ${call}`);
+    postMessage({ id, result: await found(...args) });
+  } catch (error) {
+    postMessage({ id, error: error instanceof Error ? error.message : String(error) });
+  }
+});

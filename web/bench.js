@@ -1,0 +1,225 @@
+// @ts-check
+// `?bench`: the browser half of the benchmark on a visitor's own device. Nothing of it is loaded by any other visit, and the
+// engine that draws is not started.
+//
+//   cage ── every engine in a thread of its own ── results compared ── rounds in turn ── medians ──> table, JSON
+
+import { ENGINES, NOTES, Thread, machine } from "./bench-host.js";
+import { el, full, megabytes, setText, styles } from "./dom.js";
+
+/** @typedef {import("./bench-host.js").Cage} Cage */
+/**
+ * A row of `cargo xtask bench --json`; bench/src/report.rs says what each is.
+ * @typedef {{ series: string, engine: string, name: string, scheme: string, mesh: string, cage_faces: number, level: number, faces: number,
+ *   median_ms: number, best_ms: number, samples: number, ns_per_face: number, times_limn: number, peak_bytes: number | null,
+ *   measured_bandwidth: number, limit_ns_per_face: number, clock: "wall", other_rule: false, machine: string }} Row
+ */
+
+/** Rounds of a job. */
+const ROUNDS = 7;
+/** A sample takes at least so many seconds: a browser's clock is coarse. */
+const SAMPLE = 0.02;
+/** An engine that has used so many seconds for a job has had its rounds. */
+const PATIENCE = 4;
+/** How far apart results may be, on cages two to three units in size. */
+const TOLERANCE = 1e-5;
+
+/** What is run: scheme and its name, cage by name and size and in words, level. @type {[string, string, string, number, string, number][]} */
+const JOBS = [
+  ["catmull-clark", "Catmull–Clark", "torus", 64, "torus 64×64", 4],
+  ["catmull-clark", "Catmull–Clark", "creature", 0, "creature", 5],
+  ["loop", "Loop", "sphere", 28, "sphere", 2],
+  ["loop", "Loop", "triangles", 64, "torus, triangles", 4],
+  ["linear", "Linear", "torus", 64, "torus 64×64", 4],
+  ["sqrt3", "√3", "sphere", 56, "sphere", 3],
+  ["doo-sabin", "Doo–Sabin", "torus", 64, "torus 64×64", 4],
+  ["modified-butterfly", "Modified Butterfly", "triangles", 64, "torus, triangles", 4],
+  .../** @type {[string, string, string, number, string, number][]} */ ([0, 2, 4, 6, 7].map((level) => ["catmull-clark", "Catmull–Clark", "cube", 0, "cube", level])),
+];
+
+/** A number with about three figures. @param {number} x */
+const figures = (x) => (x >= 100 ? full(Math.round(x)) : x.toPrecision(x >= 1 ? 3 : 2));
+/** @param {number[]} times */
+const median = (times) => times.toSorted((a, b) => a - b)[times.length >> 1] ?? 0;
+
+class Bench {
+  #progress = el("p", { id: "bench-progress", role: "status" });
+  #button = el("button", { id: "bench-run", className: "main", type: "button", onclick: () => this.#press() }, "Run");
+  #copy = el("button", { id: "bench-copy", type: "button", disabled: true, onclick: () => void this.#json() }, "Copy as JSON");
+  #body = el("table", { hidden: true });
+  #facts = el("p", { className: "facts" });
+  /** @type {Row[]} */ #rows = [];
+  #running = false;
+  #stop = false;
+  /** What is run now, to be ended by Stop. @type {Set<Thread>} */ #threads = new Set();
+  #device = "";
+  #bandwidth = 0;
+
+  constructor() {
+    const notes = [...NOTES, "Other tabs and a low battery slow it down; the page can be read meanwhile."];
+    document.title = "Limn: benchmark";
+    document.documentElement.classList.add("bench");
+    document.body.replaceChildren(el("main", { id: "bench" },
+      el("h1", {}, "How fast is Limn here?"),
+      el("p", { className: "lead" }, "Limn's kernel on this device, on one thread: from a cage's indexed faces to all points and faces of a level. It takes "
+        + "less than a minute, and nothing leaves this page."),
+      el("p", { className: "acts" }, this.#button, this.#copy, el("a", { href: "./" }, "Open Limn")),
+      this.#progress, this.#facts, this.#body,
+      el("ul", {}, ...notes.map((note) => el("li", {}, note))),
+    ));
+    void this.#describe();
+  }
+
+  async #describe() {
+    const { browser, adapter, cores } = await machine();
+    this.#device = `${browser}, ${cores} cores, ${adapter ? `WebGPU: ${adapter}` : "no WebGPU"}`;
+    setText(this.#facts, this.#device);
+  }
+
+  #press() {
+    if (this.#running) {
+      this.#stop = true;
+      for (const thread of this.#threads) thread.close();
+    } else void this.#run();
+  }
+
+  /** @param {string} id */
+  async #open(id) {
+    const thread = await Thread.open(id);
+    this.#threads.add(thread);
+    return thread;
+  }
+
+  async #run() {
+    this.#running = true;
+    this.#stop = false;
+    this.#rows = [];
+    this.#copy.disabled = true;
+    this.#body.hidden = true;
+    this.#body.replaceChildren(head());
+    setText(this.#button, "Stop");
+    let said = "";
+    try {
+      setText(this.#progress, "What plain stores reach");
+      const keeper = await this.#open("limn-wasm");
+      this.#bandwidth = await keeper.call("bandwidth");
+      setText(this.#facts, `${this.#device}. Plain stores reach ${(this.#bandwidth / 1e9).toFixed(1)} GB/s; “limit” is what storing the result takes at that.`);
+      for (const [at, job] of JOBS.entries()) {
+        setText(this.#progress, `${at + 1} of ${JOBS.length}: ${job[1]}, ${job[4]}, level ${job[5]}`);
+        await this.#job(job, await keeper.call("cage", job[2], job[3]));
+      }
+      said = "Done.";
+    } catch (error) {
+      said = this.#stop ? "Stopped." : `It ended early: ${error instanceof Error ? error.message : error}.`;
+    }
+    for (const thread of this.#threads) thread.close();
+    this.#threads.clear();
+    this.#running = false;
+    this.#copy.disabled = !this.#rows.length;
+    setText(this.#button, "Run again");
+    setText(this.#progress, said);
+  }
+
+  /** @param {typeof JOBS[0]} job @param {Cage} cage */
+  async #job([scheme, title, , , mesh, level], cage) {
+    /** @type {{ id: string, name: string, thread: Thread, times: number[], repeats: number, spent: number }[]} */
+    const present = [];
+    /** @type {string[]} */
+    const differ = [];
+    for (const { id, name } of ENGINES) {
+      const thread = await this.#open(id);
+      try {
+        await thread.call("prepare", cage, scheme, level);
+      } catch {
+        // It has no such scheme.
+        this.#close(thread);
+        continue;
+      }
+      const first = await thread.call("run", 1);
+      // The first is Limn on the CPU: what the others are held against.
+      const [limn] = present;
+      const why = limn ? await limn.thread.call("differs", await thread.call("surface"), TOLERANCE) : "";
+      if (why) {
+        differ.push(`${name} makes something else here: ${why}.`);
+        this.#close(thread);
+        continue;
+      }
+      present.push({ id, name, thread, times: [], repeats: Math.ceil(SAMPLE / Math.max(first, 1e-6)), spent: first });
+    }
+    for (let round = 0; round < ROUNDS; round += 1) {
+      for (const engine of present) {
+        if (engine.spent > PATIENCE && engine.times.length) continue;
+        const seconds = await engine.thread.call("run", engine.repeats);
+        engine.times.push(seconds / engine.repeats);
+        engine.spent += seconds;
+      }
+    }
+    /** @type {Row[]} */
+    const rows = [];
+    let stored = 0;
+    for (const { id, name, thread, times } of present) {
+      const faces = await thread.call("faces");
+      const middle = median(times);
+      if (!stored) {
+        // Points have 12 bytes, corners 4.
+        const { positions, corners } = await thread.call("surface");
+        stored = 4 * (positions.length + corners.length);
+      }
+      rows.push({
+        series: "table", engine: id, name, scheme, mesh, cage_faces: cage.counts.length, level, faces,
+        median_ms: middle * 1e3, best_ms: Math.min(...times) * 1e3, samples: times.length, ns_per_face: (middle * 1e9) / faces,
+        times_limn: middle / median(present[0]?.times ?? []), peak_bytes: await thread.call("peak"), measured_bandwidth: this.#bandwidth,
+        limit_ns_per_face: (stored * 1e9) / this.#bandwidth / faces, clock: "wall", other_rule: false, machine: this.#device,
+      });
+      this.#close(thread);
+    }
+    this.#rows.push(...rows);
+    this.#show(title, rows, differ);
+  }
+
+  /** @param {Thread} thread */
+  #close(thread) {
+    this.#threads.delete(thread);
+    thread.close();
+  }
+
+  /** @param {string} title @param {Row[]} rows @param {string[]} differ */
+  #show(title, rows, differ) {
+    const [first] = rows;
+    if (!first) return;
+    const many = ENGINES.length > 1;
+    const cells = (/** @type {Row} */ row) => [
+      figures(row.median_ms), figures(row.ns_per_face), figures(row.limit_ns_per_face), row.peak_bytes === null ? "–" : megabytes(row.peak_bytes),
+      ...(many ? [`×${figures(row.times_limn)}`] : []),
+    ].map((text) => el("td", {}, text));
+    const what = el("th", { scope: "row" }, title, el("small", {}, `${first.mesh}, level ${first.level}: ${full(first.faces)} faces`));
+    const lines = many
+      ? [el("tr", { className: "what" }, what), ...rows.map((row) => el("tr", {}, el("th", { scope: "row", className: "engine" }, row.name), ...cells(row)))]
+      : rows.map((row) => el("tr", {}, what, ...cells(row)));
+    const said = differ.map((text) => el("tr", {}, el("td", { className: "differ", colSpan: 6 }, text)));
+    this.#body.append(el("tbody", {}, ...lines, ...said));
+    this.#body.hidden = false;
+  }
+
+  async #json() {
+    const text = JSON.stringify({ machine: this.#device, measured_bandwidth: this.#bandwidth, date: new Date().toISOString().slice(0, 10), notes: NOTES, rows: this.#rows });
+    try {
+      await navigator.clipboard.writeText(text);
+      setText(this.#progress, "Copied.");
+    } catch {
+      // No permission, or no secure context: shown, to be copied by hand.
+      const area = el("textarea", { id: "bench-json", readOnly: true, value: text, "aria-label": "Results as JSON" });
+      document.getElementById("bench-json")?.remove();
+      this.#progress.after(area);
+      area.select();
+      setText(this.#progress, "The browser did not allow copying: here it is.");
+    }
+  }
+}
+
+function head() {
+  const names = ["", "ms", "ns a face", "limit", "memory", ...(ENGINES.length > 1 ? ["ratio"] : [])];
+  return el("thead", {}, el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
+}
+
+styles("web/bench.css").then(() => new Bench()).catch(() => document.body.replaceChildren("A part of Limn could not be loaded: is the network there?"));
