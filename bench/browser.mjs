@@ -75,8 +75,9 @@ if (!facts.adapter) {
   await browser.close();
   ({ browser, page, facts } = await open(true));
 }
-for (const { id, name } of facts.engines) {
+for (const { id, name, excuse } of facts.engines) {
   console.log(`engine ${id} ${name}`);
+  if (excuse) console.log(`excuse ${id} ${excuse}`);
   console.log(`bandwidth ${id} ${facts.bandwidth}`);
 }
 console.log(`machine browser ${facts.browser}`);

@@ -7,12 +7,13 @@
 
 /**
  * Engines in the order of tables; `on` says what they compute with. three-subdivide is a library that does not ship: it is
- * offered where the address says that whoever serves the page has put it beside.
- * @type {{ id: string, name: string, on: "wasm" | "js" | "webgpu" }[]}
+ * offered where the address says that whoever serves the page has put it beside. `excuse`: what it is known to do wrong.
+ * @type {{ id: string, name: string, on: "wasm" | "js" | "webgpu", excuse?: string }[]}
  */
+// Its edge points are found again by hundredths of their coordinates, rounded at two widths: a few are not, and stay midpoints.
 export const ENGINES = [
   { id: "limn-wasm", name: "Limn, WebAssembly", on: "wasm" },
-  ...(location.hash === "#peers" ? [/** @type {const} */ ({ id: "three-subdivide", name: "three-subdivide", on: "js" })] : []),
+  ...(location.hash === "#peers" ? [/** @type {const} */ ({ id: "three-subdivide", name: "three-subdivide", on: "js", excuse: "leaves some edge points of fine meshes where they were" })] : []),
 ];
 
 /** What a reader of the figures has to know of the engines that are not there. */

@@ -21,8 +21,6 @@
  *   Stores: new (bytes: number) => { store(n: number): number } }} Kernel
  */
 
-/** Points are as far apart as this for a library that takes hundredths for one point: a power of two, so that no bit is lost. */
-const SCALE = 4096;
 /** Bytes that plain stores are measured on. */
 const STORED = 1 << 26;
 
@@ -79,9 +77,9 @@ class Wasm {
     return this.trial.faces();
   }
 
-  /** By how much the first run made the module's memory grow. */
+  /** By how much the first run made the module's memory grow; a run that fits into what was there cannot be told. */
   peak() {
-    return this.#grown < 0 ? null : this.#grown;
+    return this.#grown > 0 ? this.#grown : null;
   }
 
   /** A cage by name: crates/kernel/src/trial/cages.rs. @param {string} name @param {number} n @returns {Cage} */
@@ -108,8 +106,13 @@ class Wasm {
   }
 }
 
-/** three-subdivide, where whoever serves the page put it. Loop on triangles; it takes and makes three corners a triangle. */
+/**
+ * three-subdivide, where whoever serves the page put it. Loop on triangles; it takes and makes three corners a triangle. It takes points
+ * that agree in hundredths for one, so it gets a cage whose finest edges will be eight hundredths long: less, and points are
+ * joined; more, and the bits of a float no longer tell hundredths apart.
+ */
 class Three {
+  #scale = 1;
   /** @type {any} */ #input = null;
   /** @type {any} */ #made = null;
   #level = 0;
@@ -126,8 +129,10 @@ class Three {
   /** @param {Cage} cage @param {string} scheme @param {number} level */
   prepare({ positions, counts, corners, sharpness }, scheme, level) {
     if (scheme !== "loop" || sharpness.length || counts.some((n) => n !== 3)) throw new Error("it has Loop on triangles");
+    // A power of two: no bit is lost.
+    this.#scale = 2 ** Math.ceil(Math.log2((0.08 * 2 ** level) / shortest(positions, corners)));
     this.#input = new this.three.BufferGeometry();
-    this.#input.setAttribute("position", new this.three.BufferAttribute(positions.map((x) => x * SCALE), 3));
+    this.#input.setAttribute("position", new this.three.BufferAttribute(positions.map((x) => x * this.#scale), 3));
     this.#input.setIndex(new this.three.BufferAttribute(corners, 1));
     this.#level = level;
     // It wants normals; they are made once, off the clock.
@@ -159,7 +164,7 @@ class Three {
         if (!first) {
           slots[at] = i + 1;
           corners[i] = vertices;
-          for (let k = 0; k < 3; k += 1) positions[3 * vertices + k] = (soup[3 * i + k] ?? 0) / SCALE;
+          for (let k = 0; k < 3; k += 1) positions[3 * vertices + k] = (soup[3 * i + k] ?? 0) / this.#scale;
           vertices += 1;
           break;
         }
@@ -182,6 +187,17 @@ class Three {
   peak() {
     return null;
   }
+}
+
+/** The shortest edge of triangles. @param {Float32Array} positions @param {Uint32Array} corners */
+function shortest(positions, corners) {
+  let least = Infinity;
+  corners.forEach((a, i) => {
+    const b = corners[i % 3 === 2 ? i - 2 : i + 1] ?? 0;
+    const [x = 0, y = 0, z = 0] = [0, 1, 2].map((k) => (positions[3 * a + k] ?? 0) - (positions[3 * b + k] ?? 0));
+    least = Math.min(least, Math.hypot(x, y, z));
+  });
+  return least;
 }
 
 /** @type {Record<string, () => Promise<Engine>>} */

@@ -20,12 +20,14 @@ const LEVEL: u32 = 2;
 const HIGHEST: u32 = 7;
 /// The largest cage's cells along one side.
 const LARGEST: u32 = 1024;
+/// A quick run ends where a level has more faces than this.
+const QUICK: f64 = 5e6;
 
 /// Measures and prints both curves of both schemes that every engine has.
 ///
 /// # Errors
 /// One sentence, if Limn does not take a cage.
-pub fn run(bench: &mut Bench, word: &str, json: bool) -> Result<(), String> {
+pub fn run(bench: &mut Bench, word: &str, json: bool, quick: bool) -> Result<(), String> {
     for (id, model, ring, names) in [
         ("catmull-clark", "creature", "torus", ["cube", "torus"]),
         ("loop", "creature-triangles", "triangles", ["cube, triangles", "torus, triangles"]),
@@ -33,13 +35,16 @@ pub fn run(bench: &mut Bench, word: &str, json: bool) -> Result<(), String> {
         if format!("{id} levels").contains(word) {
             let name = if id == "loop" { "creature, triangles" } else { "creature" };
             let soup = cage(model, 0);
-            let jobs = (0..=HIGHEST).map(|level| (name.to_owned(), soup.clone(), level));
+            let few = |level: &u32| !quick || soup.face_count() as f64 * 4f64.powi(*level as i32) < QUICK;
+            let jobs = (0..=HIGHEST).filter(few).map(|level| (name.to_owned(), soup.clone(), level));
             series(bench, "levels", id, jobs, json)?;
         }
         if format!("{id} cages").contains(word) {
             let cube = if id == "loop" { triangulate_soup(&cage("cube", 0)).0 } else { cage("cube", 0) };
-            let rings =
-                (2..=LARGEST.ilog2()).map(|k| (format!("{} {n}x{n}", names[1], n = 1 << k), cage(ring, 1 << k)));
+            let per_cell = if id == "loop" { 2.0 } else { 1.0 };
+            let few = |k: &u32| !quick || per_cell * 4f64.powi((k + LEVEL) as i32) < QUICK;
+            let sizes = (2..=LARGEST.ilog2()).filter(few);
+            let rings = sizes.map(|k| (format!("{} {n}x{n}", names[1], n = 1 << k), cage(ring, 1 << k)));
             let cages = std::iter::once((names[0].to_owned(), cube)).chain(rings);
             series(bench, "cages", id, cages.map(|(name, soup)| (name, soup, LEVEL)), json)?;
         }
@@ -57,7 +62,7 @@ fn series(
     let names = bench.names();
     if !json {
         println!("\nhow cost grows, {id}, {series}: ms, and in the first column what storing the level takes");
-        let heads: String = names.iter().map(|(_, name)| format!("{name:>17}")).collect();
+        let heads: String = names.iter().map(|(_, name)| format!("{name:>19}")).collect();
         println!("  {:<24}{:>2}{:>12}{:>10}{heads}", "cage", "L", "faces", "limit");
     }
     for (mesh, soup, level) in jobs {
@@ -72,7 +77,7 @@ fn series(
             let found: Option<&Row> = rows.iter().find(|row| row.engine == id);
             found.map_or("-".to_owned(), |row| figures(row.median_ms))
         };
-        let cells: String = names.iter().map(|(id, _)| format!("{:>17}", cell(id))).collect();
+        let cells: String = names.iter().map(|(id, _)| format!("{:>19}", cell(id))).collect();
         println!("  {mesh:<24}{level:>2}{:>12}{:>10}{cells}", grouped(first.faces), figures(limit));
     }
     Ok(())

@@ -107,6 +107,7 @@ fn run(options: &Options) -> Result<bool, String> {
         write(folder, &serde_json::from_str(&text).map_err(|e| e.to_string())?)?;
         return Ok(true);
     }
+    let begun = std::time::Instant::now();
     let (engines, machine, notes) = gather(options);
     let rules: Vec<String> = engines
         .iter()
@@ -139,13 +140,15 @@ fn run(options: &Options) -> Result<bool, String> {
     if "powell".contains(&word) && !json {
         rows::powell()?;
     }
-    growth::run(&mut bench, &word, json)?;
+    growth::run(&mut bench, &word, json, options.quick)?;
 
-    let Bench { report, differ, .. } = bench;
+    let (mut report, differ) = bench.finish();
+    report.seconds = begun.elapsed().as_secs_f64().round();
     let say = |text: &str| if json { eprintln!("{text}") } else { println!("{text}") };
     report.notes.iter().for_each(|note| say(note));
     missed.iter().for_each(|missed| say(&format!("over its budget: {missed}")));
     differ.iter().for_each(|sentence| say(sentence));
+    say(&format!("measured in {:.0} s", report.seconds));
     if let (Some(folder), true) = (&options.out, word.is_empty()) {
         write(folder, &report)?;
         say(&format!("{} has the page", folder.join("index.html").display()));

@@ -114,7 +114,7 @@ fn facts(report: &Report) -> String {
         "Native times are what the thread computed, a browser's are time that passed.",
         "Memory is the most that one run holds beyond its input; in WebAssembly, by how much its memory grew.",
     ];
-    let quick = "This was a quick run: fewer rows, fewer rounds.";
+    let quick = "This was a quick run: fewer rows, fewer rounds, curves up to five million faces.";
     let notes = how.into_iter().chain(report.quick.then_some(quick)).chain(report.notes.iter().map(String::as_str));
     notes.for_each(|note| _ = writeln!(out, "<li>{}</li>", escaped(note)));
     out + "</ul>\n"

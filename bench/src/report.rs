@@ -61,6 +61,8 @@ pub struct Report {
     pub memory: String,
     /// Whether it was a quick run, with fewer rows and rounds.
     pub quick: bool,
+    /// How long it took.
+    pub seconds: f64,
     /// Bytes a second of plain stores, natively.
     pub measured_bandwidth: f64,
     /// What a reader has to know, a sentence each.

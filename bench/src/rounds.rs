@@ -54,6 +54,8 @@ pub struct Bench {
     /// Seconds and bytes a face, by engine and scheme, as last seen.
     costs: BTreeMap<(String, String), (f64, f64)>,
     left_out: BTreeSet<(String, String)>,
+    /// By engine, jobs on which its result is another for a reason that is known.
+    lost: BTreeMap<String, Vec<String>>,
     /// Everything measured and noted.
     pub report: Report,
     /// Engines whose result is another, a sentence each.
@@ -72,7 +74,15 @@ impl Bench {
     /// Measures what stores reach, and begins.
     pub fn new(engines: Vec<Box<dyn Engine>>, machine: Machine, pace: Pace) -> Self {
         let report = Report { machine, measured_bandwidth: clock::bandwidth(), ..Report::default() };
-        Bench { engines, pace, costs: BTreeMap::new(), left_out: BTreeSet::new(), report, differ: Vec::new() }
+        Bench {
+            engines,
+            pace,
+            costs: BTreeMap::new(),
+            left_out: BTreeSet::new(),
+            lost: BTreeMap::new(),
+            report,
+            differ: Vec::new(),
+        }
     }
 
     /// Names of the engines in their order.
@@ -95,6 +105,7 @@ impl Bench {
         let machine = self.report.machine.line();
         let pace = self.pace;
         let mut sentences = Vec::new();
+        let lost = &mut self.lost;
         let mut entries: Vec<Entry<'_>> = Vec::new();
         for engine in &mut self.engines {
             let (id, name) = (engine.id().to_owned(), engine.name().to_owned());
@@ -104,15 +115,20 @@ impl Bench {
             let too_long = seconds > pace.longest;
             let too_large = memory::available().is_some_and(|free| bytes > 0.6 * free as f64);
             if too_long || too_large {
-                let would = if too_long { format!("{seconds:.1} s a run") } else { format!("{:.1} GB", bytes / 1e9) };
-                if self.left_out.insert((format!("{id} {series}"), job.id.to_owned())) {
+                let would = if too_long { format!("{seconds:.1} s") } else { format!("{:.1} GB", bytes / 1e9) };
+                // Sizes of a curve rise: where it ends is enough.
+                let part = if series == "table" { mesh } else { series };
+                if self.left_out.insert((format!("{id} {part}"), job.id.to_owned())) {
                     let at = format!("{mesh}, level {}, {} faces", job.level, grouped(faces as u64));
-                    self.report.notes.push(format!("{name} has no {} from {at} on: about {would}.", job.id));
+                    self.report
+                        .notes
+                        .push(format!("{name} is left out at {}, {at}: a run would take {would}.", job.id));
                 }
                 continue;
             }
             let differs = engine.differs(job.id);
             let clock = engine.clock().to_owned();
+            let excuse = engine.excuse().map(str::to_owned);
             let bandwidth = engine.bandwidth().unwrap_or(self.report.measured_bandwidth);
             let mut run = match engine.prepare(job) {
                 Ok(run) => run,
@@ -122,19 +138,31 @@ impl Bench {
                     continue;
                 }
             };
-            let checked = if id == LIMN || id == REFINE { Ok(()) } else { reference.check(&mut *run, differs) };
-            let first = checked.and_then(|()| run.time(1).map_err(Check::Failed));
-            let first = match first {
+            let first = match run.time(1) {
                 Ok(first) => first,
-                Err(Check::Failed(why)) => {
+                Err(why) => {
                     sentences.push(format!("{name} fails on {}, {mesh}, level {}: {why}.", job.id, job.level));
                     continue;
                 }
-                Err(Check::Differs(why)) => {
+            };
+            // Whether or not it counts: the next job is larger.
+            self.costs.insert(key, (first / faces as f64, bytes / faces as f64));
+            let checked = if id == LIMN || id == REFINE { Ok(()) } else { reference.check(&mut *run, differs) };
+            match (checked, &excuse) {
+                (Ok(()), _) => {}
+                (Err(Check::Failed(why)), _) => {
+                    sentences.push(format!("{name} fails on {}, {mesh}, level {}: {why}.", job.id, job.level));
+                    continue;
+                }
+                (Err(Check::Differs(why)), None) => {
                     self.differ.push(format!("{}, {mesh}, level {}: Limn and {name} differ: {why}", job.id, job.level));
                     continue;
                 }
-            };
+                (Err(Check::Differs(why)), Some(_)) => {
+                    lost.entry(id).or_default().push(format!("{}, {mesh}, level {} ({why})", job.id, job.level));
+                    continue;
+                }
+            }
             let row = Row {
                 series: series.to_owned(),
                 engine: id,
@@ -197,6 +225,17 @@ impl Bench {
         self.report.notes.extend(sentences);
         self.report.rows.extend(rows.iter().cloned());
         Ok(rows)
+    }
+
+    /// The report, with a sentence for each engine that is known to lose points, and the sentences of those that may not differ.
+    pub fn finish(mut self) -> (Report, Vec<String>) {
+        for engine in &self.engines {
+            if let (Some(excuse), Some(jobs)) = (engine.excuse(), self.lost.get(engine.id())) {
+                let text = format!("{} {excuse}, and has no figure where it does: {}.", engine.name(), jobs.join("; "));
+                self.report.notes.push(text);
+            }
+        }
+        (self.report, self.differ)
     }
 
     /// Lets engines that have not been seen with the scheme make a lower level first, so that nobody waits for a surprise.
@@ -358,7 +397,7 @@ mod tests {
         }
         assert_eq!(
             bench.report.notes,
-            ["Off has no catmull-clark from cube, level 2, 96 faces on: about 0.0 s a run."]
+            ["Off is left out at catmull-clark, cube, level 2, 96 faces: a run would take 0.0 s."]
         );
     }
 

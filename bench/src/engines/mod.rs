@@ -72,6 +72,11 @@ pub trait Engine {
     fn differs(&self, _id: &str) -> Option<Differs> {
         None
     }
+    /// Why its results may be others on some jobs without that being a failure of the benchmark: what it does, in words that follow
+    /// its name.
+    fn excuse(&self) -> Option<&str> {
+        None
+    }
     /// A job, ready to be run again and again.
     ///
     /// # Errors

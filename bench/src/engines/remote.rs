@@ -5,6 +5,7 @@
 //! ```text
 //!   it says     engine ID NAME ...      one line an engine
 //!               bandwidth ID BYTES/S        what plain stores reach there, if that is not what they reach natively
+//!               excuse ID WORDS ...         what it is known to do wrong: it has no figure where it does
 //!               machine KEY WORDS ...   browser or adapter, if it has one
 //!               note WORDS ...          what a reader of the table should know
 //!               ready
@@ -17,7 +18,7 @@
 //!
 //! Cost: a file each way a row, off the clock. Limit: a program that does not answer holds everything up.
 
-use super::{Absent, Differs, Engine, Job, Run};
+use super::{Absent, Engine, Job, Run};
 use limn_kernel::trial::same::Surface;
 use std::cell::RefCell;
 use std::fs;
@@ -69,7 +70,12 @@ pub fn start(command: &mut Command, clock: &'static str) -> Result<Found, String
                 clock,
                 program: Rc::clone(&program),
                 bandwidth: None,
+                excuse: None,
             }),
+            (Some("excuse"), Some(id)) => {
+                let known = engines.iter_mut().filter(|engine| engine.id == id);
+                known.for_each(|engine| engine.excuse = Some(rest.to_owned()));
+            }
             (Some("bandwidth"), Some(id)) => {
                 let known = engines.iter_mut().filter(|engine| engine.id == id);
                 known.for_each(|engine| engine.bandwidth = rest.parse().ok());
@@ -118,6 +124,7 @@ struct Remote {
     clock: &'static str,
     program: Rc<RefCell<Program>>,
     bandwidth: Option<f64>,
+    excuse: Option<String>,
 }
 
 impl Engine for Remote {
@@ -137,8 +144,8 @@ impl Engine for Remote {
         self.bandwidth
     }
 
-    fn differs(&self, _id: &str) -> Option<Differs> {
-        None
+    fn excuse(&self) -> Option<&str> {
+        self.excuse.as_deref()
     }
 
     fn prepare<'a>(&'a mut self, job: &'a Job<'a>) -> Result<Box<dyn Run + 'a>, Absent> {
@@ -240,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_program_that_speaks_is_an_engine_and_one_that_ends_is_a_sentence() {
-        let script = "echo engine it It speaks; echo bandwidth it 2.5e9; echo machine browser None 1; echo ready; \
+        let script = "echo engine it It speaks; echo bandwidth it 2.5e9; echo excuse it loses points; echo machine browser None 1; echo ready; \
                       while read line; do case $line in prepare*) echo ok;; run*) echo ok 0.25;; *) echo no idea;; esac; done";
         let mut found = start(Command::new("sh").args(["-c", script]), "wall").unwrap();
         assert_eq!(found.machine, [("browser".to_owned(), "None 1".to_owned())]);
@@ -248,6 +255,7 @@ mod tests {
         let job = Job::new("loop", 1, &soup);
         let engine = &mut found.engines[0];
         assert_eq!((engine.id(), engine.name(), engine.bandwidth()), ("it", "It speaks", Some(2.5e9)));
+        assert_eq!(engine.excuse(), Some("loses points"));
         let Ok(mut run) = engine.prepare(&job) else { panic!("it takes the job") };
         assert_eq!(run.time(3), Ok(0.25));
         assert_eq!(run.peak(), Ok(None));
