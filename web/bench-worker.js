@@ -128,7 +128,7 @@ class Three {
 
   /** @param {Cage} cage @param {string} scheme @param {number} level */
   prepare({ positions, counts, corners, sharpness }, scheme, level) {
-    if (scheme !== "loop" || sharpness.length || counts.some((n) => n !== 3)) throw new Error("it has Loop on triangles");
+    if (scheme !== "loop" || !level || sharpness.length || counts.some((n) => n !== 3)) throw new Error("it has Loop on triangles");
     // A power of two: no bit is lost.
     this.#scale = 2 ** Math.ceil(Math.log2((0.08 * 2 ** level) / shortest(positions, corners)));
     this.#input = new this.three.BufferGeometry();

@@ -88,7 +88,7 @@ fn facts(report: &Report) -> String {
             .rows
             .iter()
             .filter(|r| r.measured_bandwidth != report.measured_bandwidth)
-            .map(|r| format!("; {:.1} GB/s for {}", r.measured_bandwidth / 1e9, r.name)),
+            .map(|r| format!("; {:.1} GB/s in the browser", r.measured_bandwidth / 1e9)),
     );
     let stores = stores + &elsewhere.concat();
     let mut out = String::from("<dl>\n");
@@ -115,9 +115,13 @@ fn facts(report: &Report) -> String {
         "Memory is the most that one run holds beyond its input; in WebAssembly, by how much its memory grew.",
     ];
     let quick = "This was a quick run: fewer rows, fewer rounds, curves up to five million faces.";
-    let notes = how.into_iter().chain(report.quick.then_some(quick)).chain(report.notes.iter().map(String::as_str));
+    let took = format!("It took {} s.", report.seconds);
+    let notes = how.into_iter().chain(report.quick.then_some(quick)).chain([took.as_str()]);
     notes.for_each(|note| _ = writeln!(out, "<li>{}</li>", escaped(note)));
-    out + "</ul>\n"
+    _ = write!(out, "</ul>\n<details><summary>What is not there, and why ({})</summary>\n", report.notes.len());
+    out += "<ul class=\"notes\">\n";
+    report.notes.iter().for_each(|note| _ = writeln!(out, "<li>{}</li>", escaped(note)));
+    out + "</ul></details>\n"
 }
 
 fn legend(engines: &[(&str, &str)]) -> String {

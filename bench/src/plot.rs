@@ -111,7 +111,7 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve], limit: &[[f
     let (height, left, bottom) = (340.0, 52.0, 296.0);
     let all = || curves.iter().flat_map(|c| &c.points).chain(limit);
     let [xs, ys] = [0, 1].map(|k| decades(all().map(|p| p[k])));
-    let (x, y) = (Axis(xs[0], xs[1], left, WIDTH - 14.0), Axis(ys[0], ys[1], bottom, 18.0));
+    let (x, y) = (Axis(xs[0], xs[1], left, WIDTH - 22.0), Axis(ys[0], ys[1], bottom, 18.0));
     let mut out = open(title, WIDTH, height);
     for k in x.decades() {
         let at = x.at(10f64.powi(k));
@@ -125,7 +125,7 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve], limit: &[[f
     }
     for k in y.decades() {
         let at = y.at(10f64.powi(k));
-        _ = write!(out, "<path class=\"grid\" d=\"M{left:.1} {at:.1}H{:.1}\"/>", WIDTH - 14.0);
+        _ = write!(out, "<path class=\"grid\" d=\"M{left:.1} {at:.1}H{:.1}\"/>", WIDTH - 22.0);
         _ = write!(
             out,
             "<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
@@ -138,7 +138,7 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve], limit: &[[f
     _ = write!(
         out,
         "<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{across}</text>",
-        WIDTH - 14.0,
+        WIDTH - 22.0,
         height - 8.0
     );
     _ = write!(out, "<text class=\"tick\" x=\"{left:.1}\" y=\"11\">{up}</text>");
@@ -215,9 +215,9 @@ mod tests {
         let curve =
             Curve { class: "e0".to_owned(), label: "Limn".to_owned(), points: vec![[10.0, 1.0], [1000.0, 100.0]] };
         let made = curves("growth", "faces", "ms", &[curve], &[[10.0, 1.0], [1000.0, 10.0]]);
-        assert!(made.contains("<path class=\"curve\" d=\"M52.0 296.0L446.0 18.0\"/>"), "{made}");
-        assert!(made.contains("<path class=\"limit\" d=\"M52.0 296.0L446.0 157.0\">"), "{made}");
-        assert!(made.contains("<circle cx=\"446.0\" cy=\"18.0\" r=\"3\"/>"), "{made}");
+        assert!(made.contains("<path class=\"curve\" d=\"M52.0 296.0L438.0 18.0\"/>"), "{made}");
+        assert!(made.contains("<path class=\"limit\" d=\"M52.0 296.0L438.0 157.0\">"), "{made}");
+        assert!(made.contains("<circle cx=\"438.0\" cy=\"18.0\" r=\"3\"/>"), "{made}");
         assert_eq!(made.matches("class=\"grid\"").count(), 6, "three decades each way");
         assert_eq!(decades([3.0, 40.0].into_iter()), [1.0, 100.0]);
         assert_eq!(decades(std::iter::empty()), [1.0, 10.0]);

@@ -185,7 +185,7 @@ export function own(options) {
  * Opens the page in a context of its own (nothing cached) and waits until it is ready.
  * @param {import("playwright-core").Browser} browser
  * @param {string} url
- * @param {{ renderer?: "webgpu" | "webgl", hash?: string, width?: number, height?: number, scale?: number,
+ * @param {{ renderer?: "webgpu" | "webgl", search?: string, hash?: string, width?: number, height?: number, scale?: number,
  *   scheme?: "dark" | "light", touch?: boolean, wait?: boolean, reducedMotion?: "reduce" }} [options]
  */
 export async function visit(browser, url, options = {}) {
@@ -214,7 +214,7 @@ export async function visit(browser, url, options = {}) {
     const watch = new MutationObserver(drawn);
     watch.observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ["class"] });
   });
-  const query = renderer ? `?renderer=${renderer}` : "";
+  const query = options.search ?? (renderer ? `?renderer=${renderer}` : "");
   await page.goto(`${url}${query}${hash}`);
   if (wait) await ready(page);
   return Object.assign(page, { errors });

@@ -75,6 +75,9 @@ impl Engine for Path {
     }
 
     fn prepare<'a>(&'a mut self, job: &'a Job<'a>) -> Result<Box<dyn Run + 'a>, Absent> {
+        if job.level == 0 && !self.builds {
+            return Err(Absent::Scheme);
+        }
         let plan = plan(job).map_err(Absent::Failed)?;
         let mesh = build(job.soup).map_err(Absent::Failed)?;
         // Once untimed: whether the path carries the plan.
