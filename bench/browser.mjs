@@ -62,10 +62,14 @@ async function open(software) {
         await fetch("/bench-output", { method: "POST", body: new Blob([sizes, positions, counts, corners]) });
       },
     });
-    const first = await host.Thread.open("limn-wasm");
-    const bandwidth = await first.call("bandwidth");
-    first.close();
-    return { engines: host.ENGINES, notes: host.NOTES, bandwidth, ...(await host.machine()) };
+    const engines = [];
+    for (const engine of host.ENGINES) {
+      const first = await host.Thread.open(engine.id);
+      // Who cannot tell stores as the first does, which is Limn's module.
+      engines.push({ ...engine, bandwidth: (await first.call("bandwidth")) ?? engines[0]?.bandwidth });
+      first.close();
+    }
+    return { engines, notes: host.NOTES, ...(await host.machine()) };
   });
   return { browser, page, facts };
 }
@@ -75,10 +79,10 @@ if (!facts.adapter) {
   await browser.close();
   ({ browser, page, facts } = await open(true));
 }
-for (const { id, name, excuse } of facts.engines) {
+for (const { id, name, excuse, bandwidth } of facts.engines) {
   console.log(`engine ${id} ${name}`);
   if (excuse) console.log(`excuse ${id} ${excuse}`);
-  console.log(`bandwidth ${id} ${facts.bandwidth}`);
+  console.log(`bandwidth ${id} ${bandwidth}`);
 }
 console.log(`machine browser ${facts.browser}`);
 console.log(`machine adapter ${facts.adapter || "none"}`);

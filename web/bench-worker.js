@@ -9,9 +9,10 @@
 /** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array, ends: Uint32Array, sharpness: Float32Array }} Cage */
 /** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array }} Surface */
 /**
- * One engine with its input. `prepare` throws where the engine has no such scheme; `run` goes from indexed faces to a level.
- * @typedef {{ prepare(cage: Cage, scheme: string, level: number): void, run(): void | Promise<void>, surface(): Surface | Promise<Surface>,
- *   faces(): number, peak(): number | null }} Engine
+ * One engine with its input. `prepare` throws where the engine has no such scheme; `run` goes from indexed faces to a level; `bandwidth` is
+ * there where plain stores of the engine's own kind can be measured, in bytes a second.
+ * @typedef {{ prepare(cage: Cage, scheme: string, level: number): void | Promise<void>, run(): void | Promise<void>,
+ *   surface(): Surface | Promise<Surface>, faces(): number, peak(): number | null, bandwidth?(): number | Promise<number> }} Engine
  */
 /**
  * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
@@ -236,7 +237,7 @@ const calls = {
   peak: () => present().peak(),
   cage: (/** @type {string} */ name, /** @type {number} */ n) => wasm().cage(name, n),
   differs: (/** @type {Surface} */ other, /** @type {number} */ tolerance) => wasm().differs(other, tolerance),
-  bandwidth: () => wasm().bandwidth(),
+  bandwidth: () => present().bandwidth?.() ?? null,
 };
 
 addEventListener("message", async ({ data: { id, call, args } }) => {

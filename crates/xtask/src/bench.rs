@@ -1,8 +1,9 @@
 //! `cargo xtask bench`: Limn beside other libraries for subdivision, and (`--levels`, `--wasm`) the kernel level by level.
 //!
 //! ```text
-//!   bench [WORD]              bench/: a workspace of its own, so that nothing else builds the peers. A full run writes docs/benchmarks
-//!         --quick             fewer rows and rounds: within three minutes once built; its page goes to target/bench/page
+//!   bench [WORD]              bench/: a workspace of its own, so that nothing else builds the peers. A full run writes
+//!                             docs/benchmarks, one with --quick, --fresh or --native target/bench/page
+//!         --quick             fewer rows and rounds: within three minutes once built
 //!         --json              one JSON object a row on standard output, and nothing else there
 //!         --fresh             on freshly mapped memory: page faults counted
 //!         --native            without the browser
@@ -27,7 +28,7 @@ use std::process::Stdio;
 pub fn run(mut arguments: Arguments) -> Result<()> {
     let (wasm, levels) = (arguments.flag("--wasm"), arguments.flag("--levels"));
     let [quick, native, page] = ["--quick", "--native", "--page"].map(|name| arguments.flag(name));
-    let own = ["--fresh", "--json"].map(|name| arguments.flag(name).then_some(name));
+    let [fresh, json] = ["--fresh", "--json"].map(|name| arguments.flag(name));
     let filter = arguments.positional();
     arguments.finish()?;
     if !(wasm || levels) {
@@ -38,7 +39,8 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
         if page {
             return process::run(table.arg("--page").arg(shown));
         }
-        table.args(&filter).args(own.into_iter().flatten());
+        let own = [(fresh, "--fresh"), (json, "--json"), (quick, "--quick")];
+        table.args(&filter).args(own.iter().filter(|(wanted, _)| *wanted).map(|(_, name)| name));
         if let Some(program) = optional("OpenSubdiv in C++", opensubdiv(&folder)) {
             table.arg("--opensubdiv").arg(program);
         }
@@ -47,11 +49,9 @@ pub fn run(mut arguments: Arguments) -> Result<()> {
             // Nothing here is about the page's weight: it is sent as quickly as it can be packed.
             table.env("CHROME", chrome).env("LIMN_SITE", site).env("LIMN_QUICK", "1");
         }
-        if quick {
-            table.arg("--quick").arg("--out").arg(folder.join("page"));
-        } else {
-            table.arg("--out").arg(shown);
-        }
+        // What is kept is a whole run on warm memory.
+        let whole = !(quick || fresh || native);
+        table.arg("--out").arg(if whole { shown } else { folder.join("page") });
         say("Limn and its peers");
         return process::run(&mut table);
     }

@@ -47,7 +47,7 @@ Usage: cargo xtask <command> [options]
   bench [WORD]
           Limn beside other libraries for subdivision, natively and in Chromium; docs/benchmarks gets the page.
           A word selects rows by scheme, cage and level, and writes no page
-            --quick          fewer rows and rounds, within three minutes; its page goes to target/bench/page
+            --quick          fewer rows and rounds, within three minutes
             --json           one JSON object a row, and nothing else
             --fresh          on freshly mapped memory
             --native         without the browser
