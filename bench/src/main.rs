@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   indexed faces ─ Mesh::build ─> half-edges ─ refine ─> points and faces of level L
-//!                  '─────────────── Limn ──────────────'
-//!                                '─ refining alone ─'                        in ns a face of level L, one thread
+//!                  '─────────────── Limn ──────────────'                     in ns a face of level L, one thread
+//!                                '── mesh built ──'                          and once more by the general path alone
 //!
 //!   engines   Limn | the other Rust crates | OpenSubdiv in C++ | in Chromium: Limn as WebAssembly, three-subdivide
 //!   rounds    all of them in turn on one input, medians, memory          (rounds.rs)

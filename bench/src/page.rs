@@ -7,7 +7,7 @@
 //!   figures   every row as a table
 //! ```
 //!
-//! Limit: colours for eight engines.
+//! Limit: colours for ten engines.
 
 use crate::engines::LIMN;
 use crate::plot::{Bar, Curve, bars, curves, decades, escaped};
@@ -66,7 +66,7 @@ fn engines(report: &Report) -> Vec<(&str, &str)> {
 }
 
 fn class(engines: &[(&str, &str)], id: &str) -> String {
-    format!("e{}", engines.iter().position(|e| e.0 == id).unwrap_or_default() % 8)
+    format!("e{}", engines.iter().position(|e| e.0 == id).unwrap_or_default() % 10)
 }
 
 fn unique<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {

@@ -1,6 +1,6 @@
 //! Limn itself, natively: each of its ways to a level is one entry of [`PATHS`].
 
-use super::{Absent, Engine, Job, LIMN, REFINE, Run};
+use super::{Absent, Engine, GENERAL, Job, LIMN, REFINE, Run};
 use crate::{clock, memory};
 use limn_kernel::trial::{same::Surface, surface};
 use limn_mesh::{Boundary, Mesh, Plan, Refined, Soup, Weld, refine, scheme};
@@ -30,21 +30,31 @@ pub struct Path {
     make: fn(&Arc<Mesh>, &Plan) -> Result<Option<Box<dyn Made>>, String>,
 }
 
-/// All of them. The first is what the others are compared with.
-pub const PATHS: [Path; 2] = [
-    Path { id: LIMN, name: "Limn", builds: true, make: general },
-    Path { id: REFINE, name: "Limn, mesh built", builds: false, make: general },
+/// All of them. The first is what the others are compared with: patches where they carry the plan, else level by level.
+pub const PATHS: [Path; 3] = [
+    Path { id: LIMN, name: "Limn", builds: true, make: usual },
+    Path { id: REFINE, name: "Limn, mesh built", builds: false, make: usual },
+    Path { id: GENERAL, name: "Limn, general path", builds: true, make: general },
 ];
 
-fn general(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
+fn usual(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
     Ok(Some(Box::new(refine(mesh, plan, u64::MAX).map_err(|e| e.to_string())?)))
+}
+
+fn general(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
+    Ok(Some(Box::new(level_by_level(mesh, plan)?)))
+}
+
+fn level_by_level(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Refined, String> {
+    let job = limn_mesh::Job::new(Arc::clone(mesh), plan.clone(), u64::MAX).map_err(|e| e.to_string())?;
+    Ok(job.level_by_level().finish())
 }
 
 fn build(soup: &Soup) -> Result<Arc<Mesh>, String> {
     Mesh::build(soup, Weld::Off).map(|(mesh, _)| Arc::new(mesh)).map_err(|e| e.to_string())
 }
 
-/// The level by the general path; with `first` the scheme's first parameter is set to that.
+/// The level by the general path, which everything is held against; with `first` the scheme's first parameter is set to that.
 ///
 /// # Errors
 /// One sentence.
@@ -53,7 +63,7 @@ pub fn refined(job: &Job<'_>, first: Option<f64>) -> Result<Refined, String> {
     if let Some(value) = first {
         plan.params.set(&plan.scheme.info, 0, value);
     }
-    refine(&build(job.soup)?, &plan, u64::MAX).map_err(|e| e.to_string())
+    level_by_level(&build(job.soup)?, &plan)
 }
 
 fn plan(job: &Job<'_>) -> Result<Plan, String> {

@@ -6,7 +6,7 @@
 //!                                                       ── peak ─────> bytes
 //! ```
 //!
-//! A further path of Limn is an entry in [`natives`]; a further browser engine is an entry in `web/bench-worker.js`, and
+//! A further path of Limn is an entry in `limn::PATHS`; a further browser engine is an entry in `web/bench-worker.js`, and
 //! comes here by itself ([`remote`]).
 
 mod limn;
@@ -94,10 +94,13 @@ pub trait Run {
     fn peak(&mut self) -> Result<Option<u64>, String>;
 }
 
-/// The engine that the others are compared with: Limn from indexed faces, by its general path.
+/// The engine that the others' times are compared with: Limn from indexed faces, as everyone calls it.
 pub const LIMN: &str = "limn";
 /// The part of it that begins with a built mesh.
 pub const REFINE: &str = "limn-refine";
+
+/// Limn from indexed faces, every level from the one before: what all surfaces are held against.
+pub const GENERAL: &str = "limn-general";
 
 /// The engines of this program.
 pub fn natives() -> Vec<Box<dyn Engine>> {
