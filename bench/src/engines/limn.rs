@@ -26,9 +26,11 @@ pub struct Path {
     name: &'static str,
     /// Whether the clock starts with indexed faces, and not with a built mesh.
     builds: bool,
-    /// None where the path does not carry the plan.
-    make: fn(&Arc<Mesh>, &Plan) -> Result<Option<Box<dyn Made>>, String>,
+    make: Make,
 }
+
+/// Makes a level of a mesh; none where the path does not carry the plan.
+type Make = fn(&Arc<Mesh>, &Plan) -> Result<Option<Box<dyn Made>>, String>;
 
 /// All of them. The first is what the others are compared with: patches where they carry the plan, else level by level.
 pub const PATHS: [Path; 3] = [
