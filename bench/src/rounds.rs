@@ -44,7 +44,7 @@ impl Pace {
     /// As exact as it gets.
     pub const FULL: Pace = Pace { rounds: 21, patience: 0.4, longest: 4.0 };
     /// Ends within three minutes.
-    pub const QUICK: Pace = Pace { rounds: 5, patience: 0.25, longest: 1.0 };
+    pub const QUICK: Pace = Pace { rounds: 5, patience: 0.2, longest: 0.8 };
 }
 
 /// Engines, and what is known by now.
