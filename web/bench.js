@@ -88,6 +88,11 @@ class Bench {
   /** @param {string} id */
   async #open(id) {
     const thread = await Thread.open(id);
+    if (this.#stop) {
+      // It was told so meanwhile.
+      thread.close();
+      throw new Error("stopped");
+    }
     this.#threads.add(thread);
     return thread;
   }
@@ -140,7 +145,8 @@ class Bench {
       const thread = await this.#open(id);
       try {
         await thread.call("prepare", cage, scheme, level);
-      } catch {
+      } catch (error) {
+        if (this.#stop) throw error;
         // It has no such scheme.
         this.#close(thread);
         continue;
