@@ -13,6 +13,9 @@
 //!
 //! Cost: about 0.5 ns a point for regular quads, 1 to 2 for tables, 2 for normals.
 
+// Loops over lanes name the lane: that is what makes vector instructions of them.
+#![allow(clippy::needless_range_loop)]
+
 use super::class::Table;
 
 /// Values that are worked on at once: eight on the web and natively, four by four or eight at once as the machine can.

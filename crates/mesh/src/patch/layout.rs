@@ -158,9 +158,8 @@ impl Layout {
                     layout.add(v + 6 * family.base, 6 * family.per, &family.frames, |frame, out| {
                         let p = &frame.0;
                         let mid = |i: usize| middle(&[p[i % 3], p[(i + 1) % 3]]);
-                        for i in 0..3 {
-                            out.extend([middle(&[p[i], mid(i)]), middle(&[mid(i), mid(i + 2)])]);
-                        }
+                        let first = |i: usize| [middle(&[p[i], mid(i)]), middle(&[mid(i), mid(i + 2)])];
+                        out.extend((0..3).flat_map(first));
                     });
                 }
             }

@@ -315,7 +315,7 @@ impl Patches {
 }
 
 /// Cuts disjoint parts, by rising starts, out of a slice.
-fn parts<'a, T>(mut rest: &'a mut [T], ranges: impl Iterator<Item = Range<usize>>) -> Vec<&'a mut [T]> {
+fn parts<T>(mut rest: &mut [T], ranges: impl Iterator<Item = Range<usize>>) -> Vec<&mut [T]> {
     let mut begin = 0;
     let mut out = Vec::new();
     for range in ranges {

@@ -229,7 +229,7 @@ pub(super) fn faces(corners: &[Corner]) -> (Vec<Vec<u32>>, u32) {
         behind.push((0..listed).map(&mut list).collect());
         let own = if sides == 4 { 0 } else { 1 };
         // The first spoke before a triangle's patch ends where the next corner's first one does.
-        let mut arm: Vec<[u32; 2]> = (own..first).map(|i| list(i)).collect();
+        let mut arm: Vec<[u32; 2]> = (own..first).map(&mut list).collect();
         if own == 1 && first > 0 {
             arm.insert(0, [NONE, NONE]);
         }

@@ -56,6 +56,11 @@ const INFO: Info = Info {
     ],
 };
 
+/// What a wrapper with these parameters wraps.
+pub(super) fn wrapped(params: &[f64; super::MOST_PARAMS]) -> &'static Entry {
+    OVER.get(params[0] as usize).unwrap_or(&OVER[0])
+}
+
 /// The entry.
 pub(super) const fn fractal() -> Entry {
     if !crate::FULL {

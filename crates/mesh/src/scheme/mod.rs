@@ -180,7 +180,7 @@ impl Info {
     /// The scheme that does the work: the one that it wraps, for a wrapper with these parameters; else itself.
     pub fn behind(&self, params: &[f64; MOST_PARAMS]) -> &Info {
         match self.family {
-            Family::Fractal => &wrapped(params).info,
+            Family::Fractal => &fractal::wrapped(params).info,
             _ => self,
         }
     }
@@ -365,15 +365,10 @@ fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_
     }
 }
 
-/// What a wrapper with these parameters wraps.
-fn wrapped(params: &[f64; MOST_PARAMS]) -> &'static Entry {
-    fractal::OVER.get(params[0] as usize).unwrap_or(&fractal::OVER[0])
-}
-
 impl Entry {
     /// [`Info::behind`].
     pub(crate) fn behind(&'static self, params: &[f64; MOST_PARAMS]) -> &'static Entry {
-        if self.info.family == Family::Fractal { wrapped(params) } else { self }
+        if self.info.family == Family::Fractal { fractal::wrapped(params) } else { self }
     }
 
     /// Computes up to `quota` children's points from `cursor` on; true when all are done.
