@@ -266,22 +266,23 @@ impl Topology {
     /// Assembles half-edges from faces and matched sides. `class[h]` names the vertex before splitting, `mate[h]` the
     /// opposite half-edge or `u32::MAX`. A class whose corners form several fans becomes several vertices: the first fan
     /// keeps the place of the class in order, the others are appended. Returns also the class of every vertex.
-    /// Cost: linear.
+    /// Cost: linear, one turn around every vertex.
     pub(crate) fn assemble(offsets: Vec<u32>, class: &[u32], classes: usize, mate: &[u32]) -> (Topology, Vec<u32>) {
         const UNSET: u32 = u32::MAX;
         let half_edges = class.len();
-        let faces = offsets.len().saturating_sub(1);
-        let mut face = vec![0; half_edges];
-        for f in 0..faces {
-            face[offsets[f] as usize..offsets[f + 1] as usize].fill(f as u32);
-        }
-        let next = |h: u32| -> u32 {
-            let f = face[h as usize] as usize;
-            if h + 1 == offsets[f + 1] { offsets[f] } else { h + 1 }
-        };
-        let prev = |h: u32| -> u32 {
-            let f = face[h as usize] as usize;
-            if h == offsets[f] { offsets[f + 1] - 1 } else { h - 1 }
+        let face = faces_of(&offsets);
+        // The half-edge before or behind, the face's first and last half-edge being neighbours.
+        let around = |h: u32, back: bool| -> u32 {
+            let face = match face.get(h as usize) {
+                Some(&f) => offsets[f as usize]..offsets[f as usize + 1],
+                None => h / 3 * 3..h / 3 * 3 + 3,
+            };
+            match back {
+                true if h == face.start => face.end - 1,
+                true => h - 1,
+                false if h + 1 == face.end => face.start,
+                false => h + 1,
+            }
         };
 
         // Classes in use keep their order: that is the file's numbering with isolated vertices left out.
@@ -308,27 +309,24 @@ impl Topology {
                 vertex_class.push(c);
                 vertex_half_edge.push(UNSET);
             }
-            // Clockwise to the boundary, if there is one; then counter-clockwise over the whole fan.
+            // Counter-clockwise all the way round, or to a boundary and then clockwise to the other: there a turn starts.
             let mut start = seed;
+            let mut h = seed;
             loop {
-                let t = mate[start as usize];
-                if t == UNSET {
+                origin[h as usize] = v;
+                h = mate[around(h, true) as usize];
+                if h == seed {
                     break;
                 }
-                start = next(t);
-                if start == seed {
+                if h == UNSET {
+                    while mate[start as usize] != UNSET {
+                        start = around(mate[start as usize], false);
+                        origin[start as usize] = v;
+                    }
                     break;
                 }
             }
             vertex_half_edge[v as usize] = start;
-            let mut h = start;
-            loop {
-                origin[h as usize] = v;
-                h = mate[prev(h) as usize];
-                if h == UNSET || h == start {
-                    break;
-                }
-            }
         }
 
         let mut twin = vec![0; half_edges];
@@ -350,7 +348,6 @@ impl Topology {
                 edge_half_edge.len() as u32 - 1
             };
         }
-        let face = faces_of(&offsets);
         let topology = Topology { offsets, twin, origin, edge, face, vertex_half_edge, edge_half_edge, boundary };
         (topology, vertex_class)
     }
