@@ -339,7 +339,7 @@ impl Faces {
         let first = |&f: &u32| soup.corners.get(soup.offsets[f as usize] as usize).map(|&v| class[v as usize]);
         for f in 0..soup.face_count() {
             // Faces in no order lie anywhere: some are fetched before the first of them is waited for.
-            if let Some(order) = order.filter(|_| f.is_multiple_of(32)) {
+            if let Some(order) = order.filter(|_| FULL && f.is_multiple_of(32)) {
                 order[f..].iter().take(32).for_each(|f| _ = std::hint::black_box(first(f)));
             }
             let f = order.map_or(f, |order| order[f] as usize);

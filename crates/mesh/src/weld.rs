@@ -100,9 +100,7 @@ fn exact(positions: &[[f32; 3]], parts: &[u32]) -> Vec<u32> {
         // Slots, and what stands there, are fetched by all of a block before any has to wait for its answer.
         for (s, i) in at.iter_mut().zip(block.clone()) {
             *s = slot(key(i), mask);
-        }
-        for &s in &at {
-            std::hint::black_box(positions[(slots[s] as usize).min(from)]);
+            std::hint::black_box(positions[from.min(slots[*s] as usize)]);
         }
         for (&s, i) in at.iter().zip(block) {
             let (k, mut s) = (key(i), s);

@@ -59,8 +59,12 @@ pub fn assemble(profile: Profile, dist: &Path, modules: &[Module]) -> Result<()>
 }
 
 /// Takes comments, indentation and long names out of every script and style sheet below a folder, file by file: modules stay
-/// the modules that the page imports.
+/// the modules that the page imports. The markup loses its indentation; no text in it spans lines.
 fn minify(site: &Path) -> Result<()> {
+    let page = site.join("index.html");
+    let lines = fs::read_to_string(&page)?;
+    let lines: Vec<&str> = lines.lines().map(str::trim_start).collect();
+    fs::write(&page, lines.join("\n"))?;
     let mut esbuild = esbuild()?;
     esbuild.args(["--minify", "--charset=utf8", "--log-level=warning", "--allow-overwrite"]);
     esbuild.arg(format!("--outdir={0}", site.display())).arg(format!("--outbase={0}", site.display()));
