@@ -1,9 +1,9 @@
-//! Reading files, in MB/s of the file. `cargo bench -p limn-formats [-- WORD|FILE ...]`
+//! Reading files, in MB/s of the file. `cargo bench -p limn-formats [-- WORD]`
 //!
 //! Files of tens of megabytes are made first: a torus as programs write it. For each the median time from bytes to a
 //! [`limn_formats::Model`], beside the time that reading the file once and storing the model take at the bandwidth of plain
 //! stores measured in the same run. One thread, memory warm, as in a browser, where wasm memory never shrinks (natively the
-//! allocator is told to keep it). A word selects rows by name; names of files are read in place of what is made.
+//! allocator is told to keep it). A word selects rows by name.
 
 use limn_formats::{Export, ExportFaces, Limits, read, write_glb};
 use std::fmt::Write;
@@ -144,14 +144,6 @@ fn main() {
     let bytes_per_second = bandwidth();
     println!("medians, one thread; plain stores {:.1} GB/s", bytes_per_second / 1e9);
     println!("{:<34} {:>7} {:>8} {:>8} {:>8}", "file", "MB", "ms", "MB/s", "limit");
-    let files: Vec<&String> = words.iter().filter(|w| std::path::Path::new(w).is_file()).collect();
-    for file in &files {
-        let bytes = std::fs::read(file).unwrap_or_else(|e| panic!("{file}: {e}"));
-        row(file.rsplit('/').next().unwrap_or(file), &bytes, bytes_per_second);
-    }
-    if !files.is_empty() {
-        return;
-    }
     let word = words.first().map_or("", |w| w);
     let t = torus(700, 400);
     for (name, bytes) in [
