@@ -30,6 +30,7 @@ mod charts;
 mod connect;
 mod copies;
 pub mod crease;
+mod evaluate;
 mod face_varying;
 pub mod fairing;
 mod holes;

@@ -13,18 +13,15 @@
 
 use crate::FULL;
 use crate::charts;
-use crate::crease::Creases;
-use crate::fairing;
+pub use crate::evaluate::{Recorded, evaluate, evaluate_creased, evaluate_limit, record};
 use crate::holes;
-use crate::limit::{Limit, Projection, Projector, limit};
+use crate::limit::Projection;
 use crate::mesh::Mesh;
-use crate::owned::Owned;
 use crate::plan::{Plan, Step};
 use crate::refined::{Faces, Refined, UvValues, complete};
 pub use crate::report::{grouped, memory};
-use crate::scheme::{Boundary, Entry, Tags};
-use crate::sink::{Cursor, Record, Source, weigh};
-use crate::split::{Level, Split, Triangles};
+use crate::scheme::Boundary;
+use crate::split::{Split, Triangles};
 use crate::topology::{Connectivity, Counts};
 use crate::track::{Stage, Track};
 use std::sync::Arc;
@@ -387,127 +384,6 @@ impl Job {
 /// [`RefineError`], before anything is allocated.
 pub fn refine(mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Refined, RefineError> {
     Ok(Job::new(mesh.clone(), plan.clone(), budget)?.finish())
-}
-
-/// The slow twin of the fast path: `values` (one for each vertex of `mesh`) refined in f64 through recorded rows. Also
-/// calls `inspect` with every level's half-edges but the last's. Values of three channels are points: constants of rules
-/// move them. Cost: about 200 ns a point.
-///
-/// # Errors
-/// [`RefineError`], with no budget.
-pub fn evaluate<const N: usize>(
-    mesh: &Mesh,
-    plan: &Plan,
-    values: &[[f64; N]],
-    mut inspect: impl FnMut(&Level<'_>),
-) -> Result<Vec<[f64; N]>, RefineError> {
-    evaluate_creased(mesh, plan, values, |level, _| inspect(level))
-}
-
-/// [`evaluate`], where `inspect` also learns how sharp the level is.
-///
-/// # Errors
-/// [`RefineError`], with no budget.
-pub fn evaluate_creased<const N: usize>(
-    mesh: &Mesh,
-    plan: &Plan,
-    values: &[[f64; N]],
-    inspect: impl FnMut(&Level<'_>, Option<&Creases>),
-) -> Result<Vec<[f64; N]>, RefineError> {
-    let beyond = if plan.projects() { plan.beyond(mesh)? } else { None };
-    run(mesh, plan, values, inspect, beyond, |scheme, on, points| {
-        let mut projector = Projector::new(scheme, on);
-        *points = (0..points.len() as u32).map(|v| projector.mask(v).point(|v| points[v as usize])).collect();
-    })
-}
-
-/// Where the points of a plan's last level go in the limit, with normals and tangents, in f64 (whether the plan has them
-/// go there or not). Cost: that of [`evaluate`], and about 300 ns a vertex or what its analysis takes.
-///
-/// # Errors
-/// [`RefineError`], with no budget.
-pub fn evaluate_limit(mesh: &Mesh, plan: &Plan, points: &[[f64; 3]]) -> Result<Limit, RefineError> {
-    let mut found = Limit::default();
-    let plan = Plan { limit: false, ..plan.clone() };
-    let beyond = plan.beyond(mesh)?;
-    run(mesh, &plan, points, |_, _| (), beyond, |scheme, on, points| found = limit(scheme, on, points))?;
-    mesh.tie(&admit(mesh, &plan, u64::MAX)?, plan.level, &mut found.points);
-    Ok(found)
-}
-
-/// What [`evaluate`] does; calls `last` with the scheme of the step `beyond`, the last level as it would find it, and the
-/// points there.
-fn run<const N: usize>(
-    mesh: &Mesh,
-    plan: &Plan,
-    values: &[[f64; N]],
-    mut inspect: impl FnMut(&Level<'_>, Option<&Creases>),
-    beyond: Option<Step>,
-    mut last: impl FnMut(&'static Entry, (&Level<'_>, Split, Tags<'_>), &mut Vec<[f64; N]>),
-) -> Result<Vec<[f64; N]>, RefineError> {
-    let steps = admit(mesh, plan, u64::MAX)?;
-    let kept = plan.kept(mesh);
-    let mut old = values.to_vec();
-    let mut owned: Option<Owned> = None;
-    let mut knots = mesh.knots.clone();
-    let mut creases = Creases::of(mesh, &mesh.topology, plan.rules.face_varying);
-    for at in 0..=plan.level {
-        let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
-        let sharp = sharp_at(&steps, at, mesh, &kept);
-        if let Some(fairing) = plan.fairing(at) {
-            let Kept { sharp, joined } = sharp;
-            let tags = Tags { sharp, joined, creases: creases.as_ref(), ..Tags::new(plan.rules, Default::default()) };
-            for pass in 0..fairing.passes() {
-                let mut new = old.clone();
-                let mut take = |v: u32, row: &[(Source, f64)], _| new[v as usize] = weigh(row, |s| of(&old, &[], s));
-                let (mut cursor, mut quota) = (Cursor::default(), usize::MAX);
-                fairing::rules(&level, pass, tags, &mut Record::new(&mut take, &mut cursor, &mut quota));
-                mesh.tie(&steps, at, &mut new);
-                old = new;
-            }
-        }
-        let Some(step) = steps.get(at as usize) else {
-            if let Some(step) = &beyond {
-                let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
-                last(step.scheme, (&level, step.split, tags), &mut old);
-                mesh.tie(&steps, at, &mut old);
-            }
-            break;
-        };
-        inspect(&level, creases.as_ref());
-        let split = step.split;
-        let lone = split.lone(&level);
-        let tags = Tags { lone: &lone, knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
-        let mut new = vec![[0.0; N]; split.children(&level) as usize];
-        let mut take = |child: u32, row: &[(Source, f64)], offset: [f64; 3]| {
-            let mut sum = weigh(row, |s| of(&old, &new, s));
-            if N == 3 {
-                sum.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
-            }
-            new[child as usize] = sum;
-        };
-        step.scheme.rows((&level, split, tags), &mut take, &mut Cursor::default(), &mut { usize::MAX });
-        mesh.tie(&steps, at + 1, &mut new);
-        old = new;
-        let next = steps.get(at as usize + 1);
-        if next.is_some() || plan.closes() || beyond.is_some() {
-            let mut below = Owned::below(&level, split, tags.creases);
-            let mut at = 0;
-            while !below.fill(&level, &mut at, &mut { usize::MAX }) {}
-            knots = split.knots(&level, &knots, &lone);
-            let below = below.stored_for(next);
-            creases = creases.and_then(|c| c.below(&level, split, &below.view(), plan.rules.decay));
-            owned = Some(below);
-        }
-    }
-    Ok(old)
-}
-
-fn of<const N: usize>(old: &[[f64; N]], new: &[[f64; N]], source: Source) -> [f64; N] {
-    match source {
-        Source::Vertex(v) => old[v as usize],
-        Source::Child(v) => new[v as usize],
-    }
 }
 
 /// Vertices of a level that stay, and those of one face that do not.
