@@ -95,6 +95,8 @@ impl Gpu {
             // The defaults everywhere, but as large textures and buffers as there are.
             _ => wgpu::Limits {
                 max_buffer_size: available.max_buffer_size,
+                #[cfg(feature = "compute")]
+                max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
                 ..wgpu::Limits::default().using_resolution(available)
             },
         };

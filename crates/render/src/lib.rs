@@ -30,6 +30,8 @@ pub mod overlay;
 pub mod pack;
 mod pane;
 mod pipelines;
+#[cfg(feature = "compute")]
+pub mod refine;
 mod renderer;
 mod screen;
 mod style;

@@ -76,7 +76,7 @@ const BANNED: &[(&str, &str, &[&str])] = &[
     ),
     ("crates/formats/", "readers get bytes and give models", &["std::fs", "std::net", "wgpu", "web_sys"]),
     (
-        "crates/render/",
+        "crates/render/src/",
         "the renderer takes plain buffers",
         &["limn_mesh", "limn_formats", "limn_document", "web_sys::window"],
     ),

@@ -1,0 +1,216 @@
+//! The fused gather: points of a level in one dispatch, by rules that find their neighbours through `twin` and `origin`.
+//!
+//! ```text
+//!   level k      half-edges: twin | origin       starts: a half-edge a vertex       sharpness: one a half-edge, if anything is
+//!     points ──► level k + 1                     one invocation a face (its point, the edges that it owns), one a vertex
+//!     split  ──► half-edges of k + 1             one invocation a half-edge, one a vertex; not for the last level
+//! ```
+//!
+//! Level 0 is any polygons by tables ([`Cage`]); later levels are quads or triangles whose next, face and edge are arithmetic.
+//! Memory: 32 bytes a half-edge of the last level but one, 16 a vertex. Limit: what one binding takes.
+
+use super::cage::Size;
+use super::finish::Drawn;
+use super::kernels::{Bound, Kernel, Level, Step, Variant, whole};
+use super::{Buffers, Cage, Compute, Refiner, Rules, Scheme};
+use crate::{Error, Gpu};
+
+impl Scheme {
+    /// Whether it splits triangles, else polygons into quads.
+    pub(crate) fn is_triangles(self) -> bool {
+        !matches!(self, Scheme::CatmullClark { .. } | Scheme::Quads)
+    }
+
+    fn number(self) -> u32 {
+        match self {
+            Scheme::Quads | Scheme::Triangles => 0,
+            Scheme::CatmullClark { .. } | Scheme::Loop { .. } => 1,
+            Scheme::Butterfly { .. } => 2,
+            Scheme::ModifiedButterfly => 3,
+        }
+    }
+
+    /// Its parameters, as its kernel calls them.
+    fn numbers(self) -> [f32; 2] {
+        match self {
+            Scheme::CatmullClark { triangle } => [triangle, 0.0],
+            Scheme::Loop { warren } => [0.0, f32::from(u8::from(warren))],
+            Scheme::Butterfly { w } => [w, 0.0],
+            Scheme::Quads | Scheme::Triangles | Scheme::ModifiedButterfly => [0.0; 2],
+        }
+    }
+
+    /// Whether its rules know creases; those of the others do not, or take them another way, by rows.
+    fn softens(self) -> bool {
+        matches!(self, Scheme::CatmullClark { .. } | Scheme::Loop { .. })
+    }
+}
+
+/// The numbers of level `k`, whose size and the one before are given.
+fn level(rules: &Rules, marked: u32, k: u32, size: Size, before: Size) -> Level {
+    let triangles = rules.scheme.is_triangles();
+    let [a, b] = rules.scheme.numbers();
+    let [vertices, faces, half_edges] = [size.vertices, size.faces, size.half_edges].map(|n| n as u32);
+    let face_points = if triangles { 0 } else { faces };
+    Level {
+        half_edges,
+        vertices,
+        faces,
+        first_face: vertices,
+        first_edge: vertices + face_points,
+        owned: 2 * if triangles { before.half_edges as u32 } else { faces },
+        middle: if k == 0 { u32::MAX } else { 3 * before.half_edges as u32 },
+        step: k,
+        corners: rules.corners.into(),
+        chaikin: rules.chaikin.into(),
+        marked,
+        a,
+        b,
+        ..Level::default()
+    }
+}
+
+/// A level's half-edges on the GPU.
+struct HalfEdges {
+    half_edges: wgpu::Buffer,
+    starts: wgpu::Buffer,
+    sharpness: Option<wgpu::Buffer>,
+}
+
+impl Refiner {
+    /// What refining `cage` to `level` takes of memory on the GPU, in bytes. Cost: linear in the cage.
+    pub fn fused_bytes(cage: &Cage<'_>, rules: &Rules, level: u32) -> u64 {
+        let triangles = rules.scheme.is_triangles();
+        let word = if cage.is_creased() && rules.scheme.softens() { 12 } else { 8u64 };
+        let (mut size, mut bytes) = (cage.size(), 0u64);
+        for k in 0..level {
+            let tables = if k == 0 { 8 * size.half_edges + 4 * size.faces } else { 0 };
+            let held = word.saturating_mul(size.half_edges).saturating_add(20u64.saturating_mul(size.vertices));
+            bytes = bytes.saturating_add(held).saturating_add(tables);
+            size = size.split(triangles);
+        }
+        let faces = if triangles { 72 } else { 24u64 };
+        bytes.saturating_add(16u64.saturating_mul(size.vertices)).saturating_add(faces.saturating_mul(size.faces))
+    }
+
+    /// Prepares to refine `cage` to `level`, at least 1, by a scheme with kernels of its own. Nothing runs yet; the cage has no
+    /// points yet ([`Refiner::set_points`]).
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`], [`Error::HalfEdges`] for tables that do not belong together; [`Error::TooLarge`], before anything is
+    /// made, where a buffer would leave the adapter's limits.
+    pub fn fused(gpu: &Gpu, compute: &mut Compute, cage: &Cage<'_>, rules: &Rules, to: u32) -> Result<Refiner, Error> {
+        let scheme = rules.scheme;
+        let triangles = scheme.is_triangles();
+        cage.check(triangles)?;
+        if to == 0 {
+            return Err(Error::Mismatch { what: "levels", found: 0, expected: 1 });
+        }
+        let mut sizes = vec![cage.size()];
+        for k in 0..to as usize {
+            let next = sizes.get(k).map_or(Size::default(), |s| s.split(triangles));
+            sizes.push(next);
+        }
+        let sizes_before = sizes.iter().rev().skip(1);
+        let mut buffers = Buffers::new(gpu);
+        let last = sizes.last().copied().unwrap_or_default();
+        // Ids are 31 bits, whatever memory there is.
+        let ids = last.half_edges / 4;
+        if ids >= 1 << 31 {
+            return Err(Error::TooLarge { what: "the half-edges", bytes: ids.saturating_mul(8), limit: 8 << 31 });
+        }
+        buffers.admit("the vertices", last.vertices.saturating_mul(16))?;
+        for size in sizes_before {
+            buffers.admit("the half-edges", size.half_edges.saturating_mul(8))?;
+        }
+
+        let creased = cage.is_creased() && scheme.softens();
+        let all_marks = cage.marks();
+        let marked = all_marks.len() as u32;
+        let marks = buffers.filled("marks", &[&all_marks])?;
+        let turn = |n: u32| std::f64::consts::TAU / f64::from(n.max(1));
+        let all_angles: Vec<[f32; 2]> =
+            (0..2 * cage.valence().max(8) + 1).map(|n| [turn(n).cos() as f32, turn(n).sin() as f32]).collect();
+        let angles = buffers.filled("angles", &[&all_angles])?;
+        // Bound where a level has no such thing to read, and none to write.
+        let nothing = buffers.make("nothing", 16, wgpu::BufferUsages::empty())?;
+        let nowhere = buffers.make("nowhere", 16, wgpu::BufferUsages::empty())?;
+
+        let faces: Vec<u32> =
+            (0..).zip(cage.offsets.windows(2)).flat_map(|(f, w)| (w[0]..w[1]).map(move |_| f)).collect();
+        let mut held = HalfEdges {
+            half_edges: buffers.filled("half-edges", &[cage.twin, cage.origin])?,
+            starts: buffers.filled("starts", &[cage.start, &faces, cage.edge, cage.offsets])?,
+            sharpness: match (creased, cage.sharpness.is_empty()) {
+                (false, _) => None,
+                (true, false) => Some(buffers.filled("sharpness", &[cage.sharpness])?),
+                (true, true) => Some(buffers.filled("sharpness", &[&vec![0.0f32; cage.twin.len()]])?),
+            },
+        };
+        drop(faces);
+        let cage_points = buffers.make("cage", 16 * sizes[0].vertices, wgpu::BufferUsages::COPY_DST)?;
+        let (mut once, mut each): (Vec<Step>, Vec<Step>) = Default::default();
+        let mut points = cage_points.clone();
+        let kernels = &mut compute.kernels;
+        for k in 0..to {
+            let at = k as usize;
+            let (size, next) = (sizes[at], sizes[at + 1]);
+            let before = if k == 0 { Size::default() } else { sizes[at - 1] };
+            let numbers = level(rules, marked, k, size, before);
+            let variant = |scheme, creased| Variant { triangles, base: k == 0, creased, scheme };
+            let of_level = |held: &HalfEdges| -> [wgpu::Buffer; 5] {
+                let sharpness = held.sharpness.as_ref().unwrap_or(&nothing);
+                [&held.half_edges, &held.starts, &marks, sharpness, &angles].map(Clone::clone)
+            };
+            let read = of_level(&held);
+            let read: Vec<Bound<'_>> = read.iter().map(whole).collect();
+            let usage = if k + 1 == to {
+                wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC
+            } else {
+                wgpu::BufferUsages::empty()
+            };
+            let new = buffers.make("the vertices", 16 * next.vertices, usage)?;
+            let all = Level { end: numbers.faces + numbers.vertices, ..numbers };
+            let kernel = Kernel::Points(variant(scheme.number(), creased));
+            each.extend(kernels.step(gpu, kernel, &all, &read, &[whole(&points), whole(&new)]));
+            points = new;
+            if k + 1 == to {
+                each.extend(kernels.step(gpu, Kernel::Normals(variant(0, false)), &all, &read, &[whole(&points)]));
+                let kernel = Kernel::Faces(variant(0, false));
+                let drawn =
+                    Drawn::fused(&mut buffers, triangles, [numbers.first_face, numbers.first_edge], next.faces)?;
+                for (range, chunk) in drawn.pieces() {
+                    let numbers = Level { first: range.start, end: range.end, ..numbers };
+                    let step = kernels.step(gpu, kernel, &numbers, &read, &[whole(&points), whole(chunk)]);
+                    // Indices stay; corners hold points.
+                    if triangles { &mut each } else { &mut once }.extend(step);
+                }
+                return Ok(Refiner {
+                    cage: cage_points,
+                    cage_vertices: sizes[0].vertices as u32,
+                    once,
+                    each,
+                    vertices: points,
+                    count: next.vertices as u32,
+                    drawn,
+                    bytes: buffers.bytes,
+                });
+            }
+            let none = wgpu::BufferUsages::empty();
+            let child = HalfEdges {
+                half_edges: buffers.make("the half-edges", 8 * next.half_edges, none)?,
+                starts: buffers.make("starts", 4 * next.vertices, none)?,
+                sharpness: match creased {
+                    true => Some(buffers.make("sharpness", 4 * next.half_edges, none)?),
+                    false => None,
+                },
+            };
+            let made = [&child.half_edges, &child.starts, child.sharpness.as_ref().unwrap_or(&nowhere)].map(whole);
+            let all = Level { end: numbers.half_edges + numbers.vertices, ..numbers };
+            once.extend(kernels.step(gpu, Kernel::Split(variant(0, creased)), &all, &read, &made));
+            drop(read);
+            held = child;
+        }
+        Err(Error::Mismatch { what: "levels", found: 0, expected: 1 })
+    }
+}

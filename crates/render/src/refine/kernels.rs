@@ -1,0 +1,283 @@
+//! The compute kernels of refinement: their text, put together of parts, and their pipelines, made when first needed.
+//!
+//! A kernel is one entry point with constants before its text (how many sides faces have, whether it is level 0, whether anything
+//! is creased), so that a level's arithmetic has no branch on what cannot be. Bind groups: 0 is what is read of the level, 1 what is
+//! computed on. At most eight storage buffers together, which is what every WebGPU device has.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::Gpu;
+use crate::wgsl::wgsl;
+
+/// Invocations a workgroup, as the shaders have it.
+pub(crate) const GROUP: u32 = 256;
+
+/// The numbers of a dispatch: `struct Level` of `work.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Level {
+    pub half_edges: u32,
+    pub vertices: u32,
+    pub faces: u32,
+    pub first_face: u32,
+    pub first_edge: u32,
+    pub owned: u32,
+    pub middle: u32,
+    pub step: u32,
+    pub corners: u32,
+    pub chaikin: u32,
+    pub marked: u32,
+    pub first: u32,
+    pub end: u32,
+    pub a: f32,
+    pub b: f32,
+    pub rest: u32,
+}
+
+/// What a kernel of the fused gather is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Variant {
+    /// The triangle split, else the quad split.
+    pub triangles: bool,
+    /// Level 0.
+    pub base: bool,
+    pub creased: bool,
+    /// 0 linear; 1 Catmull-Clark or Loop, 2 Butterfly, 3 modified Butterfly.
+    pub scheme: u32,
+}
+
+/// Everything that is dispatched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kernel {
+    /// The points of the next level.
+    Points(Variant),
+    /// Its half-edges.
+    Split(Variant),
+    /// The normals of the last level, from the half-edges of the one before.
+    Normals(Variant),
+    /// Its faces: indices of quads, corners of triangles.
+    Faces(Variant),
+    /// Points from rows; whether constants move them.
+    Rows { moved: bool },
+    /// Normals of listed faces.
+    ListedFaces,
+    /// Normals of vertices from these.
+    ListedNormals,
+    /// Corners of triangles with both.
+    ListedCorners,
+}
+
+/// How a buffer is bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Access {
+    Uniform,
+    Read,
+    Write,
+}
+
+impl Kernel {
+    /// One of each text there is.
+    fn all() -> Vec<Kernel> {
+        let mut all = vec![
+            Kernel::Rows { moved: false },
+            Kernel::Rows { moved: true },
+            Kernel::ListedFaces,
+            Kernel::ListedNormals,
+            Kernel::ListedCorners,
+        ];
+        for bits in 0..8 {
+            let [triangles, base, creased] = [0, 1, 2].map(|b| bits >> b & 1 == 1);
+            let schemes = if triangles { 4 } else { 2 };
+            let variant = |scheme| Variant { triangles, base, creased, scheme };
+            all.extend((0..schemes).map(|scheme| Kernel::Points(variant(scheme))));
+            all.push(Kernel::Split(variant(0)));
+            if !creased {
+                all.extend([Kernel::Normals(variant(0)), Kernel::Faces(variant(0))]);
+            }
+        }
+        all
+    }
+
+    fn entry(self) -> &'static str {
+        match self {
+            Kernel::Points(_) | Kernel::Rows { .. } => "points",
+            Kernel::Split(_) => "split",
+            Kernel::Normals(_) | Kernel::ListedNormals => "normals",
+            Kernel::ListedCorners => "listed_corners",
+            Kernel::Faces(_) | Kernel::ListedFaces => "faces",
+        }
+    }
+
+    fn source(self) -> String {
+        let work = wgsl!("shaders/work.wgsl");
+        let variant = match self {
+            Kernel::Rows { moved } => {
+                return format!("const MOVED = {moved};\n{work}{}", wgsl!("shaders/rows.wgsl"));
+            }
+            Kernel::ListedFaces | Kernel::ListedNormals | Kernel::ListedCorners => {
+                return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
+            }
+            Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
+        };
+        let Variant { triangles, base, creased, scheme } = variant;
+        let sides = match (triangles, base) {
+            (true, _) => 3,
+            (false, true) => 0,
+            (false, false) => 4,
+        };
+        let head = format!(
+            "const SIDES = {sides}u;\nconst BASE = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}",
+            wgsl!("shaders/level.wgsl")
+        );
+        let creases = wgsl!("shaders/creases.wgsl");
+        let pack = wgsl!("shaders/pack.wgsl");
+        match (self, triangles) {
+            (Kernel::Points(_), false) => head + creases + wgsl!("shaders/quads.wgsl"),
+            (Kernel::Points(_), true) => head + creases + wgsl!("shaders/triangles.wgsl"),
+            (Kernel::Split(_), false) => head + creases + wgsl!("shaders/split_quads.wgsl"),
+            (Kernel::Split(_), true) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
+            (_, false) => head + pack + wgsl!("shaders/finish_quads.wgsl"),
+            (_, true) => head + pack + wgsl!("shaders/finish_triangles.wgsl"),
+        }
+    }
+
+    /// How the buffers of both groups are bound.
+    fn access(self) -> [&'static [Access]; 2] {
+        use Access::{Read, Uniform, Write};
+        const LEVEL: &[Access] = &[Uniform, Read, Read, Read, Read, Read];
+        match self {
+            Kernel::Points(_) => [LEVEL, &[Read, Write]],
+            Kernel::Split(_) => [LEVEL, &[Write, Write, Write]],
+            Kernel::Normals(_) => [LEVEL, &[Write]],
+            Kernel::Faces(_) => [LEVEL, &[Write, Write]],
+            Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
+            Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
+            Kernel::ListedCorners => [&[Uniform, Read, Read, Read, Read, Read], &[Write, Write, Write]],
+        }
+    }
+}
+
+/// The text of every kernel with a name, for tests that validate them.
+pub(crate) fn sources() -> Vec<(String, String)> {
+    Kernel::all().into_iter().map(|k| (format!("{k:?}"), k.source())).collect()
+}
+
+/// A buffer, or a run of bytes of it.
+pub(crate) type Bound<'a> = wgpu::BufferBinding<'a>;
+
+/// The whole of a buffer.
+pub(crate) fn whole(buffer: &wgpu::Buffer) -> Bound<'_> {
+    Bound { buffer, offset: 0, size: None }
+}
+
+/// One dispatch, ready to be recorded again and again.
+pub(crate) struct Step {
+    pipeline: wgpu::ComputePipeline,
+    groups: [wgpu::BindGroup; 2],
+    grid: [u32; 2],
+}
+
+impl Step {
+    /// Records the dispatch.
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        for (at, group) in (0..).zip(&self.groups) {
+            pass.set_bind_group(at, group, &[]);
+        }
+        pass.dispatch_workgroups(self.grid[0], self.grid[1], 1);
+    }
+}
+
+/// The pipelines that were made so far.
+#[derive(Default)]
+pub(crate) struct Kernels {
+    made: Vec<(Kernel, wgpu::ComputePipeline, [wgpu::BindGroupLayout; 2])>,
+}
+
+impl Kernels {
+    /// A dispatch of `kernel` on elements `numbers.first .. numbers.end`; `read` and `work` are bound in order, `numbers` before
+    /// them. None if there is nothing to do.
+    pub fn step(
+        &mut self,
+        gpu: &Gpu,
+        kernel: Kernel,
+        numbers: &Level,
+        read: &[Bound<'_>],
+        work: &[Bound<'_>],
+    ) -> Option<Step> {
+        let grid = grid(numbers.end.saturating_sub(numbers.first), gpu)?;
+        if !self.made.iter().any(|(k, ..)| *k == kernel) {
+            let made = make(gpu, kernel);
+            self.made.push(made);
+        }
+        let (_, pipeline, layouts) = self.made.iter().find(|(k, ..)| *k == kernel)?;
+        let uniform = crate::surface::buffer(
+            gpu,
+            "numbers",
+            size_of::<Level>() as u64,
+            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        );
+        gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(numbers));
+        let group = |layout: &wgpu::BindGroupLayout, bound: &mut dyn Iterator<Item = Bound<'_>>| {
+            let entries: Vec<_> = (0..)
+                .zip(bound)
+                .map(|(binding, b)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(b) })
+                .collect();
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+        };
+        let groups = [
+            group(&layouts[0], &mut std::iter::once(whole(&uniform)).chain(read.iter().cloned())),
+            group(&layouts[1], &mut work.iter().cloned()),
+        ];
+        Some(Step { pipeline: pipeline.clone(), groups, grid })
+    }
+}
+
+/// The workgroups for so many elements: in rows, where one dimension does not take them.
+fn grid(elements: u32, gpu: &Gpu) -> Option<[u32; 2]> {
+    let groups = elements.div_ceil(GROUP);
+    let most = gpu.device.limits().max_compute_workgroups_per_dimension.max(1);
+    let rows = groups.div_ceil(most);
+    (rows > 0).then(|| [groups.div_ceil(rows), rows])
+}
+
+fn make(gpu: &Gpu, kernel: Kernel) -> (Kernel, wgpu::ComputePipeline, [wgpu::BindGroupLayout; 2]) {
+    let layouts = kernel.access().map(|access| {
+        let entry = |(binding, access): (u32, &Access)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: match access {
+                    Access::Uniform => wgpu::BufferBindingType::Uniform,
+                    _ => wgpu::BufferBindingType::Storage { read_only: *access == Access::Read },
+                },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let entries: Vec<_> = (0..).zip(access).map(entry).collect();
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(kernel.entry()),
+            entries: &entries,
+        })
+    });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(kernel.entry()),
+        bind_group_layouts: &layouts.each_ref().map(Some),
+        immediate_size: 0,
+    });
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(kernel.entry()),
+        source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(kernel.entry()),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(kernel.entry()),
+        compilation_options: Default::default(),
+        cache: None,
+    });
+    (kernel, pipeline, layouts)
+}
