@@ -265,7 +265,11 @@ fn pictures_of_both_are_one() {
     let Some(mut check) = Check::new() else { return };
     let sheet = sheet(4);
     let cases = [("catmull-clark", 2, sheet.clone()), ("loop", 2, triangles(&sheet)), ("doo-sabin", 1, sheet.clone())];
-    for (id, level, soup) in cases.into_iter().chain([("kobbelt", 2, named("cube")), ("sqrt3", 2, triangles(&sheet))]) {
+    for (id, level, soup) in cases.into_iter().chain([
+        ("kobbelt", 2, named("cube")),
+        ("sqrt3", 2, triangles(&sheet)),
+        ("sqrt3", 3, triangles(&named("cube"))),
+    ]) {
         let mesh = build(&soup);
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();

@@ -9,6 +9,7 @@
 //! These are the numbers of `limn-mesh`, so what the GPU makes of them has its numbers too. Checked before anything is made: a
 //! kernel that turns around a vertex by wrong twins would not end. Cost of the check: linear, about 5 ns a half-edge.
 
+use super::kernels::Split;
 use crate::Error;
 
 /// Half-edges of level 0. See the module.
@@ -44,15 +45,28 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// One level further, by the triangle or the quad split. Saturates.
-    pub fn split(self, triangles: bool) -> Size {
+    /// One level further. Saturates.
+    pub fn split(self, split: Split) -> Size {
         let Size { half_edges, vertices, faces, edges } = self;
-        let face_points = if triangles { 0 } else { faces };
-        Size {
-            half_edges: half_edges.saturating_mul(4),
-            vertices: vertices.saturating_add(edges).saturating_add(face_points),
-            faces: if triangles { faces.saturating_mul(4) } else { half_edges },
-            edges: edges.saturating_mul(2).saturating_add(half_edges),
+        match split {
+            Split::Quad => Size {
+                half_edges: half_edges.saturating_mul(4),
+                vertices: vertices.saturating_add(edges).saturating_add(faces),
+                faces: half_edges,
+                edges: edges.saturating_mul(2).saturating_add(half_edges),
+            },
+            Split::Triangle => Size {
+                half_edges: half_edges.saturating_mul(4),
+                vertices: vertices.saturating_add(edges),
+                faces: faces.saturating_mul(4),
+                edges: edges.saturating_mul(2).saturating_add(half_edges),
+            },
+            Split::Sqrt3 => Size {
+                half_edges: half_edges.saturating_mul(3),
+                vertices: vertices.saturating_add(faces),
+                faces: half_edges,
+                edges: edges.saturating_mul(3),
+            },
         }
     }
 }
@@ -101,8 +115,8 @@ impl Cage<'_> {
     }
 
     /// That all tables belong together.
-    pub(crate) fn check(&self, triangles: bool) -> Result<(), Error> {
-        let half_edges = self.twin.len();
+    pub(crate) fn check(&self, split: Split) -> Result<(), Error> {
+        let (half_edges, triangles) = (self.twin.len(), split.is_of_triangles());
         let expect = |what, found: usize, expected: usize| {
             if found == expected {
                 Ok(())
@@ -126,7 +140,8 @@ impl Cage<'_> {
         }
         let edges = self.size().edges;
         for (h, ((&t, &v), &e)) in self.twin.iter().zip(self.origin).zip(self.edge).enumerate() {
-            let good = t >= BOUNDARY || (t as usize != h && self.twin.get(t as usize) == Some(&(h as u32)));
+            let good = t >= BOUNDARY && split != Split::Sqrt3
+                || (t as usize != h && self.twin.get(t as usize) == Some(&(h as u32)));
             if !good || v as usize >= self.start.len() || u64::from(e) >= edges {
                 return broken("half-edge", h);
             }

@@ -11,19 +11,22 @@
 
 use super::cage::Size;
 use super::finish::Drawn;
-use super::kernels::{Bound, Kernel, Level, Step, Variant, whole};
+use super::kernels::{Bound, Kernel, Level, Split, Step, Variant, whole};
 use super::{Buffers, Cage, Compute, Refiner, Rules, Scheme};
 use crate::{Error, Gpu};
 
 impl Scheme {
-    /// Whether it splits triangles, else polygons into quads.
-    pub(crate) fn is_triangles(self) -> bool {
-        !matches!(self, Scheme::CatmullClark { .. } | Scheme::Quads)
+    pub(crate) fn split(self) -> Split {
+        match self {
+            Scheme::CatmullClark { .. } | Scheme::Quads => Split::Quad,
+            Scheme::Sqrt3 => Split::Sqrt3,
+            _ => Split::Triangle,
+        }
     }
 
     fn number(self) -> u32 {
         match self {
-            Scheme::Quads | Scheme::Triangles => 0,
+            Scheme::Quads | Scheme::Triangles | Scheme::Sqrt3 => 0,
             Scheme::CatmullClark { .. } | Scheme::Loop { .. } => 1,
             Scheme::Butterfly { .. } => 2,
             Scheme::ModifiedButterfly => 3,
@@ -36,7 +39,7 @@ impl Scheme {
             Scheme::CatmullClark { triangle } => [triangle, 0.0],
             Scheme::Loop { warren } => [0.0, f32::from(u8::from(warren))],
             Scheme::Butterfly { w } => [w, 0.0],
-            Scheme::Quads | Scheme::Triangles | Scheme::ModifiedButterfly => [0.0; 2],
+            Scheme::Quads | Scheme::Triangles | Scheme::ModifiedButterfly | Scheme::Sqrt3 => [0.0; 2],
         }
     }
 
@@ -48,18 +51,18 @@ impl Scheme {
 
 /// The numbers of level `k`, whose size and the one before are given.
 fn level(rules: &Rules, marked: u32, k: u32, size: Size, before: Size) -> Level {
-    let triangles = rules.scheme.is_triangles();
+    let split = rules.scheme.split();
     let [a, b] = rules.scheme.numbers();
     let [vertices, faces, half_edges] = [size.vertices, size.faces, size.half_edges].map(|n| n as u32);
-    let face_points = if triangles { 0 } else { faces };
+    let face_points = if split == Split::Triangle { 0 } else { faces };
     Level {
         half_edges,
         vertices,
         faces,
         first_face: vertices,
         first_edge: vertices + face_points,
-        owned: 2 * if triangles { before.half_edges as u32 } else { faces },
-        middle: if k == 0 { u32::MAX } else { 3 * before.half_edges as u32 },
+        owned: 2 * if split == Split::Quad { faces } else { before.half_edges as u32 },
+        middle: if k == 0 || split != Split::Triangle { u32::MAX } else { 3 * before.half_edges as u32 },
         step: k,
         corners: rules.corners.into(),
         chaikin: rules.chaikin.into(),
@@ -80,16 +83,16 @@ struct HalfEdges {
 impl Refiner {
     /// What refining `cage` to `level` takes of memory on the GPU, in bytes. Cost: linear in the cage.
     pub fn fused_bytes(cage: &Cage<'_>, rules: &Rules, level: u32) -> u64 {
-        let triangles = rules.scheme.is_triangles();
+        let split = rules.scheme.split();
         let word = if cage.is_creased() && rules.scheme.softens() { 12 } else { 8u64 };
         let (mut size, mut bytes) = (cage.size(), 0u64);
         for k in 0..level {
             let tables = if k == 0 { 8 * size.half_edges + 4 * size.faces } else { 0 };
             let held = word.saturating_mul(size.half_edges).saturating_add(20u64.saturating_mul(size.vertices));
             bytes = bytes.saturating_add(held).saturating_add(tables);
-            size = size.split(triangles);
+            size = size.split(split);
         }
-        let faces = if triangles { 72 } else { 24u64 };
+        let faces = if split.is_of_triangles() { 72 } else { 24u64 };
         bytes.saturating_add(16u64.saturating_mul(size.vertices)).saturating_add(faces.saturating_mul(size.faces))
     }
 
@@ -101,21 +104,21 @@ impl Refiner {
     /// made, where a buffer would leave the adapter's limits.
     pub fn fused(gpu: &Gpu, compute: &mut Compute, cage: &Cage<'_>, rules: &Rules, to: u32) -> Result<Refiner, Error> {
         let scheme = rules.scheme;
-        let triangles = scheme.is_triangles();
-        cage.check(triangles)?;
+        let split = scheme.split();
+        cage.check(split)?;
         if to == 0 {
             return Err(Error::Mismatch { what: "levels", found: 0, expected: 1 });
         }
         let mut sizes = vec![cage.size()];
         for k in 0..to as usize {
-            let next = sizes.get(k).map_or(Size::default(), |s| s.split(triangles));
+            let next = sizes.get(k).map_or(Size::default(), |s| s.split(split));
             sizes.push(next);
         }
         let sizes_before = sizes.iter().rev().skip(1);
         let mut buffers = Buffers::new(gpu);
         let last = sizes.last().copied().unwrap_or_default();
         // Ids are 31 bits, whatever memory there is.
-        let ids = last.half_edges / 4;
+        let ids = sizes_before.clone().map(|s| s.half_edges).max().unwrap_or(0);
         if ids >= 1 << 31 {
             return Err(Error::TooLarge { what: "the half-edges", bytes: ids.saturating_mul(8), limit: 8 << 31 });
         }
@@ -157,7 +160,7 @@ impl Refiner {
             let (size, next) = (sizes[at], sizes[at + 1]);
             let before = if k == 0 { Size::default() } else { sizes[at - 1] };
             let numbers = level(rules, marked, k, size, before);
-            let variant = |scheme, creased| Variant { triangles, base: k == 0, creased, scheme };
+            let variant = |scheme, creased| Variant { split, base: k == 0 && split != Split::Sqrt3, creased, scheme };
             let of_level = |held: &HalfEdges| -> [wgpu::Buffer; 5] {
                 let sharpness = held.sharpness.as_ref().unwrap_or(&nothing);
                 [&held.half_edges, &held.starts, &marks, sharpness, &angles].map(Clone::clone)
@@ -177,13 +180,17 @@ impl Refiner {
             if k + 1 == to {
                 each.extend(kernels.step(gpu, Kernel::Normals(variant(0, false)), &all, &read, &[whole(&points)]));
                 let kernel = Kernel::Faces(variant(0, false));
-                let drawn =
-                    Drawn::fused(&mut buffers, triangles, [numbers.first_face, numbers.first_edge], next.faces)?;
+                let drawn = Drawn::fused(
+                    &mut buffers,
+                    split.is_of_triangles(),
+                    [numbers.first_face, numbers.first_edge],
+                    next.faces,
+                )?;
                 for (range, chunk) in drawn.pieces() {
                     let numbers = Level { first: range.start, end: range.end, ..numbers };
                     let step = kernels.step(gpu, kernel, &numbers, &read, &[whole(&points), whole(chunk)]);
                     // Indices stay; corners hold points.
-                    if triangles { &mut each } else { &mut once }.extend(step);
+                    if split.is_of_triangles() { &mut each } else { &mut once }.extend(step);
                 }
                 return Ok(Refiner {
                     cage: cage_points,

@@ -34,11 +34,27 @@ pub(crate) struct Level {
     pub rest: u32,
 }
 
+/// How a level's half-edges come of those before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Split {
+    Quad,
+    Triangle,
+    Sqrt3,
+}
+
+impl Split {
+    const ALL: [Split; 3] = [Split::Quad, Split::Triangle, Split::Sqrt3];
+
+    /// Whether it takes triangles only.
+    pub fn is_of_triangles(self) -> bool {
+        self != Split::Quad
+    }
+}
+
 /// What a kernel of the fused gather is compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Variant {
-    /// The triangle split, else the quad split.
-    pub triangles: bool,
+    pub split: Split,
     /// Level 0.
     pub base: bool,
     pub creased: bool,
@@ -85,11 +101,16 @@ impl Kernel {
             Kernel::ListedNormals,
             Kernel::ListedCorners,
         ];
-        for bits in 0..8 {
-            let [triangles, base, creased] = [0, 1, 2].map(|b| bits >> b & 1 == 1);
-            let schemes = if triangles { 4 } else { 2 };
-            let variant = |scheme| Variant { triangles, base, creased, scheme };
-            all.extend((0..schemes).map(|scheme| Kernel::Points(variant(scheme))));
+        for (split, bits) in Split::ALL.into_iter().flat_map(|split| (0..4).map(move |bits| (split, bits))) {
+            let [base, creased] = [0, 1].map(|b| bits >> b & 1 == 1);
+            let variant = |scheme| Variant { split, base, creased, scheme };
+            match split {
+                Split::Quad => all.extend((0..2).map(|scheme| Kernel::Points(variant(scheme)))),
+                Split::Triangle => all.extend((0..4).map(|scheme| Kernel::Points(variant(scheme)))),
+                // It knows no creases, and its levels are all alike.
+                Split::Sqrt3 if bits > 0 => continue,
+                Split::Sqrt3 => all.push(Kernel::Points(variant(0))),
+            }
             all.push(Kernel::Split(variant(0)));
             if !creased {
                 all.extend([Kernel::Normals(variant(0)), Kernel::Faces(variant(0))]);
@@ -119,11 +140,11 @@ impl Kernel {
             }
             Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
         };
-        let Variant { triangles, base, creased, scheme } = variant;
-        let sides = match (triangles, base) {
-            (true, _) => 3,
-            (false, true) => 0,
-            (false, false) => 4,
+        let Variant { split, base, creased, scheme } = variant;
+        let sides = match (split, base) {
+            (Split::Triangle | Split::Sqrt3, _) => 3,
+            (Split::Quad, true) => 0,
+            (Split::Quad, false) => 4,
         };
         let head = format!(
             "const SIDES = {sides}u;\nconst BASE = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}",
@@ -131,13 +152,16 @@ impl Kernel {
         );
         let creases = wgsl!("shaders/creases.wgsl");
         let pack = wgsl!("shaders/pack.wgsl");
-        match (self, triangles) {
-            (Kernel::Points(_), false) => head + creases + wgsl!("shaders/quads.wgsl"),
-            (Kernel::Points(_), true) => head + creases + wgsl!("shaders/triangles.wgsl"),
-            (Kernel::Split(_), false) => head + creases + wgsl!("shaders/split_quads.wgsl"),
-            (Kernel::Split(_), true) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
-            (_, false) => head + pack + wgsl!("shaders/finish_quads.wgsl"),
-            (_, true) => head + pack + wgsl!("shaders/finish_triangles.wgsl"),
+        match (self, split) {
+            (Kernel::Points(_), Split::Quad) => head + creases + wgsl!("shaders/quads.wgsl"),
+            (Kernel::Points(_), Split::Triangle) => head + creases + wgsl!("shaders/triangles.wgsl"),
+            (Kernel::Points(_), Split::Sqrt3) => head + wgsl!("shaders/sqrt3.wgsl"),
+            (Kernel::Split(_), Split::Quad) => head + creases + wgsl!("shaders/split_quads.wgsl"),
+            (Kernel::Split(_), Split::Triangle) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
+            (Kernel::Split(_), Split::Sqrt3) => head + wgsl!("shaders/split_sqrt3.wgsl"),
+            (_, Split::Quad) => head + pack + wgsl!("shaders/finish_quads.wgsl"),
+            (_, Split::Triangle) => head + pack + wgsl!("shaders/finish_triangles.wgsl"),
+            (_, Split::Sqrt3) => head + pack + wgsl!("shaders/finish_sqrt3.wgsl"),
         }
     }
 

@@ -55,6 +55,8 @@ pub enum Scheme {
     },
     /// Modified Butterfly on triangles.
     ModifiedButterfly,
+    /// Sqrt3 on closed meshes of triangles. On a rim every second step numbers vertices by ranks that are no arithmetic: rows.
+    Sqrt3,
 }
 
 /// What holds beside the scheme.

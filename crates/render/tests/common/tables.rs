@@ -60,6 +60,7 @@ pub fn fused(mesh: &Mesh, plan: &Plan) -> Option<Rules> {
         "loop" => Scheme::Loop { warren: params[0] == 1.0 },
         "butterfly" if !creased => Scheme::Butterfly { w: params[0] as f32 },
         "modified-butterfly" if !creased => Scheme::ModifiedButterfly,
+        "sqrt3" if !creased && mesh.topology.boundary_half_edges() == 0 => Scheme::Sqrt3,
         _ => return None,
     };
     let corners = plan.rules.boundary == Boundary::EdgeAndCorner;

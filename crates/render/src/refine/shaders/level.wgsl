@@ -133,13 +133,13 @@ fn stays(v: u32) -> bool {
 
 // The half-edge that arrives at a boundary vertex along the rim, by a turn from the one that leaves it there.
 fn arriving(from_h: u32) -> u32 {
-    var h = from_h;
+    var back = prev(from_h);
     loop {
-        let back = prev(h);
-        h = twin(back);
+        let h = twin(back);
         if is_boundary(h) || h == from_h {
-            return back;
+            break;
         }
+        back = prev(h);
     }
-    return from_h;
+    return back;
 }

@@ -99,13 +99,12 @@ fn rim_rule(r: Ring, v: u32) -> vec4<f32> {
         let inner = (mine.y * there.y + double * there.x * there.y) / k;
         sum += select(inner, end, h == r.first) * old[target_of(h)];
         there = turned(there, theta);
-        let back = prev(h);
-        h = twin(back);
+        h = twin(prev(h));
         if is_boundary(h) || h == r.first {
-            return sum - end * old[origin(back)];
+            break;
         }
     }
-    return sum;
+    return sum - end * old[origin(arriving(r.first))];
 }
 
 fn ring_weight(n: u32, j: u32, there: vec2<f32>) -> f32 {
