@@ -269,6 +269,7 @@ fn pictures_of_both_are_one() {
         ("kobbelt", 2, named("cube")),
         ("sqrt3", 2, triangles(&sheet)),
         ("sqrt3", 3, triangles(&named("cube"))),
+        ("doo-sabin", 2, prism(7, false)),
     ]) {
         let mesh = build(&soup);
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);

@@ -67,6 +67,12 @@ impl Size {
                 faces: half_edges,
                 edges: edges.saturating_mul(3),
             },
+            Split::Dual => Size {
+                half_edges: half_edges.saturating_mul(4),
+                vertices: half_edges,
+                faces: faces.saturating_add(edges).saturating_add(vertices),
+                edges: half_edges.saturating_mul(2),
+            },
         }
     }
 }
@@ -102,14 +108,29 @@ impl Cage<'_> {
         if any { (0..self.start.len()).map(of).collect() } else { Vec::new() }
     }
 
-    /// The most edges at a vertex, or sides of a face.
-    pub(crate) fn valence(&self) -> u32 {
+    /// How many faces are around each vertex.
+    fn around(&self) -> Vec<u32> {
         let mut faces = vec![0u32; self.start.len()];
         for &v in self.origin {
             if let Some(n) = faces.get_mut(v as usize) {
                 *n += 1;
             }
         }
+        faces
+    }
+
+    /// How many half-edges leave the vertices before each.
+    pub(crate) fn turns(&self) -> Vec<u32> {
+        let before = |sum: &mut u32, n: u32| {
+            *sum += n;
+            Some(*sum - n)
+        };
+        self.around().into_iter().scan(0, before).collect()
+    }
+
+    /// The most edges at a vertex, or sides of a face.
+    pub(crate) fn valence(&self) -> u32 {
+        let faces = self.around();
         let sides = self.offsets.windows(2).map(|w| w[1].saturating_sub(w[0]));
         faces.iter().map(|n| n + 1).chain(sides).max().unwrap_or(0)
     }
@@ -140,11 +161,16 @@ impl Cage<'_> {
         }
         let edges = self.size().edges;
         for (h, ((&t, &v), &e)) in self.twin.iter().zip(self.origin).zip(self.edge).enumerate() {
-            let good = t >= BOUNDARY && split != Split::Sqrt3
+            let good = t >= BOUNDARY && !split.is_of_closed()
                 || (t as usize != h && self.twin.get(t as usize) == Some(&(h as u32)));
             if !good || v as usize >= self.start.len() || u64::from(e) >= edges {
                 return broken("half-edge", h);
             }
+        }
+        // Around such a vertex the dual split makes no face.
+        let few = |n: &u32| *n < 3;
+        if let (Split::Dual, Some(v)) = (split, self.around().iter().position(few)) {
+            return broken("vertex", v);
         }
         let wrong = |(v, &h): (usize, &u32)| self.origin.get(h as usize) != Some(&(v as u32));
         match self.start.iter().enumerate().position(wrong) {

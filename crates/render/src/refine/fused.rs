@@ -20,6 +20,7 @@ impl Scheme {
         match self {
             Scheme::CatmullClark { .. } | Scheme::Quads => Split::Quad,
             Scheme::Sqrt3 => Split::Sqrt3,
+            Scheme::DooSabin { .. } => Split::Dual,
             _ => Split::Triangle,
         }
     }
@@ -28,6 +29,7 @@ impl Scheme {
         match self {
             Scheme::Quads | Scheme::Triangles | Scheme::Sqrt3 => 0,
             Scheme::CatmullClark { .. } | Scheme::Loop { .. } => 1,
+            Scheme::DooSabin { midpoint } => midpoint.into(),
             Scheme::Butterfly { .. } => 2,
             Scheme::ModifiedButterfly => 3,
         }
@@ -39,7 +41,7 @@ impl Scheme {
             Scheme::CatmullClark { triangle } => [triangle, 0.0],
             Scheme::Loop { warren } => [0.0, f32::from(u8::from(warren))],
             Scheme::Butterfly { w } => [w, 0.0],
-            Scheme::Quads | Scheme::Triangles | Scheme::ModifiedButterfly | Scheme::Sqrt3 => [0.0; 2],
+            _ => [0.0; 2],
         }
     }
 
@@ -61,7 +63,12 @@ fn level(rules: &Rules, marked: u32, k: u32, size: Size, before: Size) -> Level 
         faces,
         first_face: vertices,
         first_edge: vertices + face_points,
-        owned: 2 * if split == Split::Quad { faces } else { before.half_edges as u32 },
+        owned: match split {
+            Split::Quad => 2 * faces,
+            Split::Triangle => 2 * before.half_edges as u32,
+            Split::Sqrt3 => 0,
+            Split::Dual => size.edges as u32,
+        },
         middle: if k == 0 || split != Split::Triangle { u32::MAX } else { 3 * before.half_edges as u32 },
         step: k,
         corners: rules.corners.into(),
@@ -84,16 +91,27 @@ impl Refiner {
     /// What refining `cage` to `level` takes of memory on the GPU, in bytes. Cost: linear in the cage.
     pub fn fused_bytes(cage: &Cage<'_>, rules: &Rules, level: u32) -> u64 {
         let split = rules.scheme.split();
-        let word = if cage.is_creased() && rules.scheme.softens() { 12 } else { 8u64 };
+        // Half-edges: twin and origin, sharpness; of the dual split face and edge.
+        let word = if split == Split::Dual {
+            16
+        } else if cage.is_creased() && rules.scheme.softens() {
+            12
+        } else {
+            8u64
+        };
         let (mut size, mut bytes) = (cage.size(), 0u64);
         for k in 0..level {
-            let tables = if k == 0 { 8 * size.half_edges + 4 * size.faces } else { 0 };
+            let tables = if k == 0 && split != Split::Dual { 8 * size.half_edges + 4 * size.faces } else { 0 };
             let held = word.saturating_mul(size.half_edges).saturating_add(20u64.saturating_mul(size.vertices));
             bytes = bytes.saturating_add(held).saturating_add(tables);
             size = size.split(split);
         }
-        let faces = if split.is_of_triangles() { 72 } else { 24u64 };
-        bytes.saturating_add(16u64.saturating_mul(size.vertices)).saturating_add(faces.saturating_mul(size.faces))
+        let faces = match split {
+            Split::Quad => size.faces.saturating_mul(24),
+            Split::Dual => size.half_edges.saturating_sub(size.faces.saturating_mul(2)).saturating_mul(72),
+            Split::Triangle | Split::Sqrt3 => size.faces.saturating_mul(72),
+        };
+        bytes.saturating_add(16u64.saturating_mul(size.vertices)).saturating_add(faces)
     }
 
     /// Prepares to refine `cage` to `level`, at least 1, by a scheme with kernels of its own. Nothing runs yet; the cage has no
@@ -141,9 +159,10 @@ impl Refiner {
 
         let faces: Vec<u32> =
             (0..).zip(cage.offsets.windows(2)).flat_map(|(f, w)| (w[0]..w[1]).map(move |_| f)).collect();
+        let turns = if split == Split::Dual { cage.turns() } else { Vec::new() };
         let mut held = HalfEdges {
             half_edges: buffers.filled("half-edges", &[cage.twin, cage.origin])?,
-            starts: buffers.filled("starts", &[cage.start, &faces, cage.edge, cage.offsets])?,
+            starts: buffers.filled("starts", &[cage.start, &faces, cage.edge, cage.offsets, &turns])?,
             sharpness: match (creased, cage.sharpness.is_empty()) {
                 (false, _) => None,
                 (true, false) => Some(buffers.filled("sharpness", &[cage.sharpness])?),
@@ -173,24 +192,28 @@ impl Refiner {
                 wgpu::BufferUsages::empty()
             };
             let new = buffers.make("the vertices", 16 * next.vertices, usage)?;
-            let all = Level { end: numbers.faces + numbers.vertices, ..numbers };
+            // The dual split's children are of half-edges.
+            let elements = if split == Split::Dual { numbers.half_edges } else { numbers.faces + numbers.vertices };
+            let all = Level { end: elements, ..numbers };
             let kernel = Kernel::Points(variant(scheme.number(), creased));
             each.extend(kernels.step(gpu, kernel, &all, &read, &[whole(&points), whole(&new)]));
             points = new;
             if k + 1 == to {
                 each.extend(kernels.step(gpu, Kernel::Normals(variant(0, false)), &all, &read, &[whole(&points)]));
                 let kernel = Kernel::Faces(variant(0, false));
-                let drawn = Drawn::fused(
-                    &mut buffers,
-                    split.is_of_triangles(),
-                    [numbers.first_face, numbers.first_edge],
-                    next.faces,
-                )?;
+                let corners = split != Split::Quad;
+                // Of the dual split the triangles of its polygons.
+                let faces = if split == Split::Dual { next.half_edges - 2 * next.faces } else { next.faces };
+                let kinds = [numbers.first_face, numbers.first_edge];
+                let drawn = Drawn::fused(&mut buffers, corners, kinds, faces)?;
                 for (range, chunk) in drawn.pieces() {
-                    let numbers = Level { first: range.start, end: range.end, ..numbers };
+                    let numbers = match split {
+                        Split::Dual => Level { step: range.start, marked: range.end, ..all },
+                        _ => Level { first: range.start, end: range.end, ..numbers },
+                    };
                     let step = kernels.step(gpu, kernel, &numbers, &read, &[whole(&points), whole(chunk)]);
                     // Indices stay; corners hold points.
-                    if split.is_of_triangles() { &mut each } else { &mut once }.extend(step);
+                    if corners { &mut each } else { &mut once }.extend(step);
                 }
                 return Ok(Refiner {
                     cage: cage_points,
@@ -204,16 +227,18 @@ impl Refiner {
                 });
             }
             let none = wgpu::BufferUsages::empty();
+            let tables = if split == Split::Dual { 2 * next.half_edges + next.faces + 1 } else { 0 };
             let child = HalfEdges {
                 half_edges: buffers.make("the half-edges", 8 * next.half_edges, none)?,
-                starts: buffers.make("starts", 4 * next.vertices, none)?,
+                starts: buffers.make("starts", 4 * (next.vertices + tables), none)?,
                 sharpness: match creased {
                     true => Some(buffers.make("sharpness", 4 * next.half_edges, none)?),
                     false => None,
                 },
             };
             let made = [&child.half_edges, &child.starts, child.sharpness.as_ref().unwrap_or(&nowhere)].map(whole);
-            let all = Level { end: numbers.half_edges + numbers.vertices, ..numbers };
+            let old = if split == Split::Dual { 0 } else { numbers.vertices };
+            let all = Level { end: numbers.half_edges + old, ..numbers };
             once.extend(kernels.step(gpu, Kernel::Split(variant(0, creased)), &all, &read, &made));
             drop(read);
             held = child;

@@ -40,14 +40,20 @@ pub(crate) enum Split {
     Quad,
     Triangle,
     Sqrt3,
+    Dual,
 }
 
 impl Split {
-    const ALL: [Split; 3] = [Split::Quad, Split::Triangle, Split::Sqrt3];
+    const ALL: [Split; 4] = [Split::Quad, Split::Triangle, Split::Sqrt3, Split::Dual];
 
     /// Whether it takes triangles only.
     pub fn is_of_triangles(self) -> bool {
-        self != Split::Quad
+        matches!(self, Split::Triangle | Split::Sqrt3)
+    }
+
+    /// Whether it takes closed meshes only: what it makes of rims is no arithmetic.
+    pub fn is_of_closed(self) -> bool {
+        matches!(self, Split::Sqrt3 | Split::Dual)
     }
 }
 
@@ -58,7 +64,7 @@ pub(crate) struct Variant {
     /// Level 0.
     pub base: bool,
     pub creased: bool,
-    /// 0 linear; 1 Catmull-Clark or Loop, 2 Butterfly, 3 modified Butterfly.
+    /// 0 linear; 1 Catmull-Clark or Loop, 2 Butterfly, 3 modified Butterfly. Of the dual split 1 is the midpoint variant.
     pub scheme: u32,
 }
 
@@ -110,6 +116,8 @@ impl Kernel {
                 // It knows no creases, and its levels are all alike.
                 Split::Sqrt3 if bits > 0 => continue,
                 Split::Sqrt3 => all.push(Kernel::Points(variant(0))),
+                Split::Dual if creased => continue,
+                Split::Dual => all.extend((0..2).map(|scheme| Kernel::Points(variant(scheme)))),
             }
             all.push(Kernel::Split(variant(0)));
             if !creased {
@@ -143,25 +151,30 @@ impl Kernel {
         let Variant { split, base, creased, scheme } = variant;
         let sides = match (split, base) {
             (Split::Triangle | Split::Sqrt3, _) => 3,
-            (Split::Quad, true) => 0,
+            (Split::Quad, true) | (Split::Dual, _) => 0,
             (Split::Quad, false) => 4,
         };
+        let tables = base || split == Split::Dual;
         let head = format!(
-            "const SIDES = {sides}u;\nconst BASE = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}",
+            "const SIDES = {sides}u;\nconst BASE = {tables};\nconst FIRST = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}",
             wgsl!("shaders/level.wgsl")
         );
         let creases = wgsl!("shaders/creases.wgsl");
         let pack = wgsl!("shaders/pack.wgsl");
+        let turns = wgsl!("shaders/turns.wgsl");
         match (self, split) {
             (Kernel::Points(_), Split::Quad) => head + creases + wgsl!("shaders/quads.wgsl"),
             (Kernel::Points(_), Split::Triangle) => head + creases + wgsl!("shaders/triangles.wgsl"),
             (Kernel::Points(_), Split::Sqrt3) => head + wgsl!("shaders/sqrt3.wgsl"),
+            (Kernel::Points(_), Split::Dual) => head + wgsl!("shaders/dual.wgsl"),
             (Kernel::Split(_), Split::Quad) => head + creases + wgsl!("shaders/split_quads.wgsl"),
             (Kernel::Split(_), Split::Triangle) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
             (Kernel::Split(_), Split::Sqrt3) => head + wgsl!("shaders/split_sqrt3.wgsl"),
+            (Kernel::Split(_), Split::Dual) => head + turns + wgsl!("shaders/split_dual.wgsl"),
             (_, Split::Quad) => head + pack + wgsl!("shaders/finish_quads.wgsl"),
             (_, Split::Triangle) => head + pack + wgsl!("shaders/finish_triangles.wgsl"),
             (_, Split::Sqrt3) => head + pack + wgsl!("shaders/finish_sqrt3.wgsl"),
+            (_, Split::Dual) => head + turns + pack + wgsl!("shaders/finish_dual.wgsl"),
         }
     }
 

@@ -57,6 +57,11 @@ pub enum Scheme {
     ModifiedButterfly,
     /// Sqrt3 on closed meshes of triangles. On a rim every second step numbers vertices by ranks that are no arithmetic: rows.
     Sqrt3,
+    /// Doo-Sabin on closed meshes of any polygons, three and more around every vertex.
+    DooSabin {
+        /// Doo's midpoint weights.
+        midpoint: bool,
+    },
 }
 
 /// What holds beside the scheme.

@@ -61,10 +61,24 @@ pub fn fused(mesh: &Mesh, plan: &Plan) -> Option<Rules> {
         "butterfly" if !creased => Scheme::Butterfly { w: params[0] as f32 },
         "modified-butterfly" if !creased => Scheme::ModifiedButterfly,
         "sqrt3" if !creased && mesh.topology.boundary_half_edges() == 0 => Scheme::Sqrt3,
+        "doo-sabin" | "doo-sabin-midpoint" if is_all_round(mesh) => {
+            Scheme::DooSabin { midpoint: plan.scheme.info.id != "doo-sabin" }
+        }
         _ => return None,
     };
     let corners = plan.rules.boundary == Boundary::EdgeAndCorner;
     Some(Rules { scheme, corners, chaikin: plan.rules.decay == Decay::Chaikin })
+}
+
+/// Whether a mesh is closed with three and more faces around every vertex.
+fn is_all_round(mesh: &Mesh) -> bool {
+    let t = &mesh.topology;
+    let faces = |v: u32| {
+        let mut n = 0;
+        t.turn(v, |_| n += 1);
+        n
+    };
+    t.boundary_half_edges() == 0 && (0..t.vertices()).all(|v| faces(v) >= 3)
 }
 
 /// The plan's rows, step by step.
