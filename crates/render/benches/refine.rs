@@ -17,7 +17,7 @@
 mod tables;
 
 use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme, shape, triangulate_soup};
-use limn_render::refine::{Compute, Refiner};
+use limn_render::refine::{Compute, Refiner, Values};
 use limn_render::{Gpu, Tier};
 use std::time::Instant;
 
@@ -106,9 +106,10 @@ fn main() {
             let refined = if rules.is_none() { refine(&mesh, &plan, u64::MAX).ok() } else { None };
             let mut make = || match (&rules, &refined) {
                 (Some(rules), _) => {
-                    Refiner::fused(&gpu, &mut compute, &prepared.cage(&mesh), rules, level).map_err(|e| e.to_string())
+                    Refiner::fused(&gpu, &mut compute, &prepared.cage(&mesh), rules, level, Values::Points)
+                        .map_err(|e| e.to_string())
                 }
-                (None, Some(refined)) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined)),
+                (None, Some(refined)) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined, Values::Points)),
                 (None, None) => Err("it cannot be refined".to_owned()),
             };
             // Compiles, too.

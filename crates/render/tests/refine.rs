@@ -10,8 +10,8 @@ use limn_mesh::{
     Accepts, Boundary, Decay, Fairing, Mesh, Params, Plan, Refined, Run, SCHEMES, Soup, TriangleRule, Weld, bounds,
     refine, scheme, shape, triangulate_soup,
 };
-use limn_render::refine::{Cage, Compute, Refiner, Rules, Scheme};
-use limn_render::{Edges, Error, Gpu, Renderer, Style, SurfaceData};
+use limn_render::refine::{Cage, Compute, Refiner, Rules, Scheme, Values};
+use limn_render::{Bounds, Edges, Error, Gpu, Renderer, Style, Surface, SurfaceData};
 use std::sync::Arc;
 
 const BUDGET: u64 = 1 << 30;
@@ -130,16 +130,34 @@ impl Check {
         self.compared += 1;
     }
 
+    /// Whether both are drawn alike, but for single pixels.
+    fn same_picture(&mut self, uploaded: Surface, made: Surface, id: &str) {
+        assert_eq!(made.bytes(), uploaded.bytes(), "{id}");
+        let camera = common::perspective([9.0, -6.0, 7.0], [2.0, 2.0, 0.3], 1.0, 6.0);
+        let style = Style { edges: Edges::Bold, ..Style::light() };
+        let pictures = [uploaded, made].map(|surface| {
+            self.renderer.show(Some(surface));
+            common::shoot(&mut self.renderer, &common::frame(camera, style.clone()), 256, 256)
+        });
+        let differs = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 8;
+        let different = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|p| differs(*p)).count();
+        pictures[1].save(&format!("refined-{id}"));
+        let drawn = pictures[0].rgba.chunks(4).filter(|p| *p != &pictures[0].rgba[..4]).count();
+        assert!(drawn > 3000, "{id}: {drawn} pixels are drawn");
+        assert!(different < 200, "{id}: {different} bytes differ");
+    }
+
     /// Refines both ways, where there are two.
     fn plan(&mut self, mesh: &Arc<Mesh>, plan: &Plan, what: &str, rows_too: bool) {
         let Ok(refined) = refine(mesh, plan, BUDGET) else { return };
         let rules = tables::fused(mesh, plan);
         if let Some(rules) = &rules {
-            let refiner = tables::by_kernels(self.renderer.gpu(), &mut self.compute, mesh, rules, plan.level);
+            let refiner =
+                tables::by_kernels(self.renderer.gpu(), &mut self.compute, mesh, rules, plan.level, Values::Points);
             self.same(&refiner, &refined, &format!("{what}, kernels"));
         }
         if rules.is_none() || rows_too {
-            let refiner = tables::by_rows(self.renderer.gpu(), &mut self.compute, mesh, plan, &refined);
+            let refiner = tables::by_rows(self.renderer.gpu(), &mut self.compute, mesh, plan, &refined, Values::Points);
             self.same(&refiner, &refined, &format!("{what}, rows"));
         }
     }
@@ -244,8 +262,10 @@ fn a_cage_that_moves() {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 3);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
         let mut refiner = match tables::fused(&mesh, &plan) {
-            Some(rules) => tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, 3),
-            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined),
+            Some(rules) => {
+                tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, 3, Values::Points)
+            }
+            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined, Values::Points),
         };
         check.same(&refiner, &refined, id);
         let mut moved = Mesh::clone(&mesh);
@@ -275,8 +295,10 @@ fn pictures_of_both_are_one() {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
         let refiner = match tables::fused(&mesh, &plan) {
-            Some(rules) => tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, level),
-            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined),
+            Some(rules) => {
+                tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, level, Values::Points)
+            }
+            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined, Values::Points),
         };
         let normals = refined.normals();
         let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
@@ -286,21 +308,46 @@ fn pictures_of_both_are_one() {
         let mut upload = check.renderer.upload(&data).unwrap();
         while !upload.step(check.gpu(), &data, 1000).unwrap() {}
         let uploaded = upload.finish();
-        let surface = refiner.surface(uploaded.bounds());
-        assert_eq!(surface.bytes(), uploaded.bytes(), "{id}");
-        let camera = common::perspective([9.0, -6.0, 7.0], [2.0, 2.0, 0.3], 1.0, 6.0);
-        let style = Style { edges: Edges::Bold, ..Style::light() };
-        let mut pictures = Vec::new();
-        for surface in [uploaded, surface] {
-            check.renderer.show(Some(surface));
-            pictures.push(common::shoot(&mut check.renderer, &common::frame(camera, style.clone()), 256, 256));
+        let surface = refiner.surface(uploaded.bounds(), None).unwrap();
+        check.same_picture(uploaded, surface, id);
+    }
+}
+
+/// Colours take the rules that points take, and are drawn with them where faces share vertices.
+#[test]
+fn colours_go_the_same_way() {
+    let Some(mut check) = Check::new() else { return };
+    for id in ["catmull-clark", "doo-sabin", "loop", "fractal", "kobbelt"] {
+        let soup = if id == "loop" { triangles(&sheet(4)) } else { sheet(4) };
+        let mut mesh = Mesh::clone(&build(&soup));
+        let shade = |p: &[f32; 3]| [0.2 * p[0], 0.2 * p[1], p[2], 0.5 + 0.1 * p[0]];
+        mesh.colors = mesh.positions.iter().map(shade).collect();
+        let mesh = Arc::new(mesh);
+        let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 2);
+        let refined = refine(&mesh, &plan, BUDGET).unwrap();
+        let (gpu, compute) = (check.renderer.gpu(), &mut check.compute);
+        let [points, colors] = [Values::Points, Values::Colors].map(|what| match tables::fused(&mesh, &plan) {
+            Some(rules) => tables::by_kernels(gpu, compute, &mesh, &rules, 2, what),
+            None => tables::by_rows(gpu, compute, &mesh, &plan, &refined, what),
+        });
+        let read: Vec<_> = tables::read_words(gpu, &colors).into_iter().map(|w| w.map(f32::from_bits)).collect();
+        assert_eq!(read.len(), refined.colors.len());
+        let off = read.iter().zip(&refined.colors).flat_map(|(a, b)| (0..4).map(|k| (a[k] - b[k]).abs()));
+        let worst = off.fold(0.0, |a, b| if b <= a { a } else { b });
+        assert!(worst <= 1e-5, "{id}: colours are off by {worst:e}");
+        if refined.parent_ranges.is_none() {
+            let error = points.surface(Bounds { min: [0.0; 3], max: [1.0; 3] }, Some(&colors)).err().unwrap();
+            assert!(error.to_string().starts_with("colours of vertices that quads share"), "{error}");
+            continue;
         }
-        let differs = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 8;
-        let different = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|p| differs(*p)).count();
-        pictures[1].save(&format!("refined-{id}"));
-        let drawn = pictures[0].rgba.chunks(4).filter(|p| *p != &pictures[0].rgba[..4]).count();
-        assert!(drawn > 3000, "{id}: {drawn} pixels are drawn");
-        assert!(different < 200, "{id}: {different} bytes differ");
+        let normals = refined.normals();
+        let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
+        (data.parents, data.colors) = (refined.parent_ranges, &refined.colors);
+        let mut upload = check.renderer.upload(&data).unwrap();
+        while !upload.step(check.gpu(), &data, 1000).unwrap() {}
+        let uploaded = upload.finish();
+        let surface = points.surface(uploaded.bounds(), Some(&colors)).unwrap();
+        check.same_picture(uploaded, surface, id);
     }
 }
 
@@ -313,7 +360,10 @@ fn bad_tables_and_large_levels_are_refused() {
     let good = tables::Tables::of(&mesh);
     let (gpu, compute) = (check.renderer.gpu(), &mut check.compute);
     let mut refused = |cage: &Cage<'_>, rules: &Rules, level| {
-        Refiner::fused(gpu, compute, cage, rules, level).err().map(|e| e.to_string()).unwrap_or_default()
+        Refiner::fused(gpu, compute, cage, rules, level, Values::Points)
+            .err()
+            .map(|e| e.to_string())
+            .unwrap_or_default()
     };
     assert_eq!(refused(&good.cage(&mesh), &rules, 2), "");
     let half_edge =

@@ -73,10 +73,16 @@ impl Drawn {
     }
 
     /// A surface of these buffers.
-    pub fn surface(&self, vertices: &wgpu::Buffer, count: u32, bounds: Bounds) -> Surface {
+    pub fn surface(
+        &self,
+        vertices: &wgpu::Buffer,
+        count: u32,
+        bounds: Bounds,
+        colors: Option<&wgpu::Buffer>,
+    ) -> Surface {
         let (layout, elements) = match self {
             Drawn::Quads { kinds, .. } => {
-                (Layout::Shared { vertices: vertices.clone(), count, colors: None, kinds: *kinds }, 6)
+                (Layout::Shared { vertices: vertices.clone(), count, colors: colors.cloned(), kinds: *kinds }, 6)
             }
             Drawn::Corners { .. } => (Layout::Corners { extras: false }, 3),
         };
@@ -93,7 +99,7 @@ impl Drawn {
             runs: vec![Run { part: 0, first: 0, count: all }],
             parts: vec![Part { material: u32::MAX, group: 0 }],
             has_uv: false,
-            has_colors: false,
+            has_colors: colors.is_some(),
             bounds,
         }
     }

@@ -12,7 +12,7 @@
 use super::cage::Size;
 use super::finish::Drawn;
 use super::kernels::{Bound, Kernel, Level, Split, Step, Variant, whole};
-use super::{Buffers, Cage, Compute, Refiner, Rules, Scheme};
+use super::{Buffers, Cage, Compute, Refiner, Rules, Scheme, Values};
 use crate::{Error, Gpu};
 
 impl Scheme {
@@ -120,7 +120,14 @@ impl Refiner {
     /// # Errors
     /// [`Error::Mismatch`], [`Error::HalfEdges`] for tables that do not belong together; [`Error::TooLarge`], before anything is
     /// made, where a buffer would leave the adapter's limits.
-    pub fn fused(gpu: &Gpu, compute: &mut Compute, cage: &Cage<'_>, rules: &Rules, to: u32) -> Result<Refiner, Error> {
+    pub fn fused(
+        gpu: &Gpu,
+        compute: &mut Compute,
+        cage: &Cage<'_>,
+        rules: &Rules,
+        to: u32,
+        values: Values,
+    ) -> Result<Refiner, Error> {
         let scheme = rules.scheme;
         let split = scheme.split();
         cage.check(split)?;
@@ -198,6 +205,10 @@ impl Refiner {
             let kernel = Kernel::Points(variant(scheme.number(), creased));
             each.extend(kernels.step(gpu, kernel, &all, &read, &[whole(&points), whole(&new)]));
             points = new;
+            if k + 1 == to && values == Values::Colors {
+                let cage = (cage_points, sizes[0].vertices as u32);
+                return Refiner::colors(buffers, kernels, cage, (once, each), (points, next.vertices as u32));
+            }
             if k + 1 == to {
                 each.extend(kernels.step(gpu, Kernel::Normals(variant(0, false)), &all, &read, &[whole(&points)]));
                 let kernel = Kernel::Faces(variant(0, false));
@@ -223,6 +234,7 @@ impl Refiner {
                     vertices: points,
                     count: next.vertices as u32,
                     drawn,
+                    packed: None,
                     bytes: buffers.bytes,
                 });
             }

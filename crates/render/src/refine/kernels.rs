@@ -87,6 +87,8 @@ pub(crate) enum Kernel {
     ListedNormals,
     /// Corners of triangles with both.
     ListedCorners,
+    /// Colours in four bytes.
+    Colors,
 }
 
 /// How a buffer is bound.
@@ -106,6 +108,7 @@ impl Kernel {
             Kernel::ListedFaces,
             Kernel::ListedNormals,
             Kernel::ListedCorners,
+            Kernel::Colors,
         ];
         for (split, bits) in Split::ALL.into_iter().flat_map(|split| (0..4).map(move |bits| (split, bits))) {
             let [base, creased] = [0, 1].map(|b| bits >> b & 1 == 1);
@@ -133,6 +136,7 @@ impl Kernel {
             Kernel::Split(_) => "split",
             Kernel::Normals(_) | Kernel::ListedNormals => "normals",
             Kernel::ListedCorners => "listed_corners",
+            Kernel::Colors => "colors",
             Kernel::Faces(_) | Kernel::ListedFaces => "faces",
         }
     }
@@ -146,6 +150,7 @@ impl Kernel {
             Kernel::ListedFaces | Kernel::ListedNormals | Kernel::ListedCorners => {
                 return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
             }
+            Kernel::Colors => return format!("{work}{}", wgsl!("shaders/colors.wgsl")),
             Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
         };
         let Variant { split, base, creased, scheme } = variant;
@@ -189,6 +194,7 @@ impl Kernel {
             Kernel::Faces(_) => [LEVEL, &[Write, Write]],
             Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
+            Kernel::Colors => [&[Uniform], &[Read, Write]],
             Kernel::ListedCorners => [&[Uniform, Read, Read, Read, Read, Read], &[Write, Write, Write]],
         }
     }

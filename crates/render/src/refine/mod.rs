@@ -29,7 +29,7 @@ pub use rows::{Pass, RowLevel, Rows};
 use crate::surface::{Bounds, Surface};
 use crate::{Error, Gpu};
 use finish::Drawn;
-use kernels::{Kernels, Step};
+use kernels::{Kernel, Kernels, Level, Step, whole};
 
 /// A scheme that has kernels of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,15 @@ pub struct Rules {
     pub chaikin: bool,
 }
 
+/// What is refined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Values {
+    /// Points, with normals and faces to be drawn.
+    Points,
+    /// Linear colours, by the same rules, for the surface that points make.
+    Colors,
+}
+
 /// The kernels that were compiled so far; one for all refiners of a device.
 #[derive(Default)]
 pub struct Compute {
@@ -91,6 +100,8 @@ pub struct Refiner {
     vertices: wgpu::Buffer,
     count: u32,
     drawn: Drawn,
+    /// Colours as the draw reads them.
+    packed: Option<wgpu::Buffer>,
     bytes: u64,
 }
 
@@ -102,12 +113,20 @@ impl Refiner {
     /// # Errors
     /// [`Error::Mismatch`] for more points than there are vertices.
     pub fn set_points(&self, gpu: &Gpu, first: u32, points: &[[f32; 3]]) -> Result<(), Error> {
-        let end = u64::from(first) + points.len() as u64;
+        let padded: Vec<[f32; 4]> = points.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+        self.set_values(gpu, first, &padded)
+    }
+
+    /// The same of values of four numbers: linear RGBA.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] for more values than there are vertices.
+    pub fn set_values(&self, gpu: &Gpu, first: u32, values: &[[f32; 4]]) -> Result<(), Error> {
+        let end = u64::from(first) + values.len() as u64;
         if end > u64::from(self.cage_vertices) {
             return Err(Error::Mismatch { what: "cage points", found: end, expected: self.cage_vertices.into() });
         }
-        let padded: Vec<[f32; 4]> = points.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
-        gpu.queue.write_buffer(&self.cage, u64::from(first) * 16, bytemuck::cast_slice(&padded));
+        gpu.queue.write_buffer(&self.cage, u64::from(first) * 16, bytemuck::cast_slice(values));
         Ok(())
     }
 
@@ -127,12 +146,24 @@ impl Refiner {
     }
 
     /// The surface that is filled: the same buffers, so that it changes with every [`Refiner::refine`]. `bounds` is the box that the
-    /// caller knows around the points (the GPU's are not read back).
-    pub fn surface(&self, bounds: Bounds) -> Surface {
-        self.drawn.surface(&self.vertices, self.count, bounds)
+    /// caller knows around the points (the GPU's are not read back), `colors` a refiner of [`Values::Colors`] beside this one.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] where there are colours and faces do not share vertices, or the colours are of others.
+    pub fn surface(&self, bounds: Bounds, colors: Option<&Refiner>) -> Result<Surface, Error> {
+        let packed = match (colors, &self.drawn) {
+            (None, _) => None,
+            (Some(r), Drawn::Quads { .. }) if r.count == self.count && r.packed.is_some() => r.packed.as_ref(),
+            (Some(r), _) => {
+                let (found, expected) = (r.count.into(), self.count.into());
+                return Err(Error::Mismatch { what: "colours of vertices that quads share", found, expected });
+            }
+        };
+        Ok(self.drawn.surface(&self.vertices, self.count, bounds, packed))
     }
 
-    /// The vertices: 16 bytes each, position and octahedral normal, in the order of `limn-mesh`. They can be copied from.
+    /// The vertices: 16 bytes each, position and octahedral normal, in the order of `limn-mesh`; of colours four numbers. They can be
+    /// copied from.
     pub fn vertices(&self) -> &wgpu::Buffer {
         &self.vertices
     }
@@ -145,6 +176,25 @@ impl Refiner {
     /// Bytes on the GPU.
     pub fn bytes(&self) -> u64 {
         self.bytes
+    }
+}
+
+impl Refiner {
+    /// A refiner that gives colours: `values` of the last level, and the same as the draw reads them.
+    fn colors(
+        mut buffers: Buffers<'_>,
+        kernels: &mut Kernels,
+        (cage, cage_vertices): (wgpu::Buffer, u32),
+        (once, mut each): (Vec<Step>, Vec<Step>),
+        (values, count): (wgpu::Buffer, u32),
+    ) -> Result<Refiner, Error> {
+        let packed =
+            buffers.make("colours", 4 * u64::from(count), wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC)?;
+        let numbers = Level { end: count, ..Level::default() };
+        each.extend(kernels.step(buffers.gpu, Kernel::Colors, &numbers, &[], &[whole(&values), whole(&packed)]));
+        let drawn = Drawn::Corners { pieces: Vec::new() };
+        let bytes = buffers.bytes;
+        Ok(Refiner { cage, cage_vertices, once, each, vertices: values, count, drawn, packed: Some(packed), bytes })
     }
 }
 

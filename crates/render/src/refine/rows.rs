@@ -10,7 +10,7 @@
 
 use super::finish::Drawn;
 use super::kernels::{Bound, Kernel, Level, Step, whole};
-use super::{Buffers, Compute, Refiner};
+use super::{Buffers, Compute, Refiner, Values};
 use crate::corners::edge_flags;
 use crate::surface::Faces;
 use crate::{Error, Gpu};
@@ -140,13 +140,12 @@ impl Refiner {
     /// # Errors
     /// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
     /// leave the adapter's limits.
-    pub fn rows(gpu: &Gpu, compute: &mut Compute, rows: &Rows<'_>) -> Result<Refiner, Error> {
+    pub fn rows(gpu: &Gpu, compute: &mut Compute, rows: &Rows<'_>, values: Values) -> Result<Refiner, Error> {
         let mut before = rows.cage;
         for level in rows.levels {
             level.check(before)?;
             before = level.vertices;
         }
-        let (turns, spokes) = around(&rows.faces, before)?;
         let mut buffers = Buffers::new(gpu);
         let kernels = &mut compute.kernels;
         let cage = buffers.make("cage", 16 * u64::from(rows.cage), wgpu::BufferUsages::COPY_DST)?;
@@ -168,11 +167,16 @@ impl Refiner {
                 let read: Vec<Bound<'_>> = read.iter().map(whole).collect();
                 let end = pass.offsets.len().saturating_sub(1) as u32;
                 let numbers = Level { first_face: pass.first, end, ..Level::default() };
-                let kernel = Kernel::Rows { moved: !pass.moves.is_empty() };
+                // Constants move points alone.
+                let kernel = Kernel::Rows { moved: !pass.moves.is_empty() && values == Values::Points };
                 each.extend(kernels.step(gpu, kernel, &numbers, &read, &[whole(&points), whole(&new)]));
             }
             points = new;
         }
+        if values == Values::Colors {
+            return Refiner::colors(buffers, kernels, (cage, rows.cage), (Vec::new(), each), (points, before));
+        }
+        let (turns, spokes) = around(&rows.faces, before)?;
         let faces = rows.faces.count() as u32;
         let offsets: Vec<u32> = match rows.faces {
             Faces::Triangles(_) => (0..=faces).map(|f| 3 * f).collect(),
@@ -211,6 +215,7 @@ impl Refiner {
             vertices: points,
             count: before,
             drawn,
+            packed: None,
             bytes: buffers.bytes,
         })
     }

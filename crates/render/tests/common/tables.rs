@@ -3,7 +3,7 @@
 use limn_mesh::refine::{Recorded, record};
 use limn_mesh::sink::Source;
 use limn_mesh::{Boundary, Connectivity, Decay, Faces, Mesh, Plan, Refined, TriangleRule};
-use limn_render::refine::{Cage, Compute, Pass, Refiner, RowLevel, Rows, Rules, Scheme};
+use limn_render::refine::{Cage, Compute, Pass, Refiner, RowLevel, Rows, Rules, Scheme, Values};
 use limn_render::{Gpu, pack};
 
 /// Level 0 in full.
@@ -134,8 +134,8 @@ pub fn parents(refined: &Refined) -> Option<[u32; 2]> {
     }
 }
 
-/// Refines by rows.
-pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined) -> Refiner {
+/// Refines by rows: points, or the mesh's colours.
+pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined, what: Values) -> Refiner {
     let levels = rows(mesh, plan);
     let kinds: Vec<u8> = refined.kinds.iter().map(|k| *k as u8 + 1).collect();
     let rows = Rows {
@@ -145,23 +145,35 @@ pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refin
         parents: parents(refined),
         kinds: &kinds,
     };
-    let mut refiner = Refiner::rows(gpu, compute, &rows).unwrap();
-    refiner.set_points(gpu, 0, &mesh.positions).unwrap();
-    refiner.refine(gpu);
-    refiner
+    run(gpu, mesh, Refiner::rows(gpu, compute, &rows, what).unwrap(), what)
 }
 
 /// Refines by kernels made for the scheme.
-pub fn by_kernels(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, rules: &Rules, level: u32) -> Refiner {
+pub fn by_kernels(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, rules: &Rules, level: u32, what: Values) -> Refiner {
     let tables = Tables::of(mesh);
-    let mut refiner = Refiner::fused(gpu, compute, &tables.cage(mesh), rules, level).unwrap();
-    refiner.set_points(gpu, 0, &mesh.positions).unwrap();
+    run(gpu, mesh, Refiner::fused(gpu, compute, &tables.cage(mesh), rules, level, what).unwrap(), what)
+}
+
+fn run(gpu: &Gpu, mesh: &Mesh, mut refiner: Refiner, what: Values) -> Refiner {
+    match what {
+        Values::Points => refiner.set_points(gpu, 0, &mesh.positions).unwrap(),
+        Values::Colors => refiner.set_values(gpu, 0, &mesh.colors).unwrap(),
+    }
     refiner.refine(gpu);
     refiner
 }
 
 /// The vertices that a refiner made: points, and unit normals.
 pub fn read(gpu: &Gpu, refiner: &Refiner) -> Vec<([f32; 3], [f32; 3])> {
+    let vertex = |v: [u32; 4]| {
+        let n = [v[3] as u16, (v[3] >> 16) as u16].map(|n| n as i16);
+        ([0, 1, 2].map(|k| f32::from_bits(v[k])), pack::unpack_normal(n))
+    };
+    read_words(gpu, refiner).into_iter().map(vertex).collect()
+}
+
+/// The four words of every vertex that a refiner made.
+pub fn read_words(gpu: &Gpu, refiner: &Refiner) -> Vec<[u32; 4]> {
     let bytes = u64::from(refiner.count()) * 16;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -175,10 +187,6 @@ pub fn read(gpu: &Gpu, refiner: &Refiner) -> Vec<([f32; 3], [f32; 3])> {
     buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let mapped = buffer.slice(..).get_mapped_range().unwrap();
-    let vertex = |v: &[u8]| {
-        let f = |i: usize| f32::from_le_bytes(v[4 * i..4 * i + 4].try_into().unwrap());
-        let n = [12, 14].map(|i| i16::from_le_bytes(v[i..i + 2].try_into().unwrap()));
-        ([0, 1, 2].map(f), pack::unpack_normal(n))
-    };
-    mapped.chunks_exact(16).map(vertex).collect()
+    let word = |w: &[u8]| u32::from_le_bytes(w.try_into().unwrap());
+    mapped.chunks_exact(16).map(|v| [0, 4, 8, 12].map(|i| word(&v[i..i + 4]))).collect()
 }
