@@ -6,7 +6,8 @@
 //!     split  ──► half-edges of k + 1             one invocation a half-edge, one a vertex; not for the last level
 //! ```
 //!
-//! Level 0 is any polygons by tables ([`Cage`]); later levels are quads or triangles whose next, face and edge are arithmetic.
+//! Level 0 is any polygons by tables ([`Cage`]); later levels are quads or triangles whose next, face and edge are arithmetic. Only the
+//! dual split's faces are not all alike: its levels write such tables for themselves.
 //! Memory: 32 bytes a half-edge of the last level but one, 16 a vertex. Limit: what one binding takes.
 
 use super::cage::Size;
