@@ -94,9 +94,18 @@ fn creases_agree() {
     assert!(patched >= 6, "only {patched} of 12 went by patches");
 }
 
-/// Slices of any length make the same bits.
+/// Slices of any length make the same bits, and (in a build that shares large work among threads) so do threads.
 #[test]
 fn slices_make_the_same() {
+    let mesh = build(&(shape("creature").unwrap().build)());
+    let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 4);
+    let job = || Job::new(mesh.clone(), plan.clone(), u64::MAX).unwrap().shaded();
+    let (whole, mut sliced) = (job().finish(), job());
+    while !sliced.step(20_000) {}
+    let sliced = sliced.finish();
+    assert!(whole.points == sliced.points && whole.known_normals == sliced.known_normals);
+    assert_eq!(whole.faces, sliced.faces);
+
     let mesh = build(&(shape("mouse").unwrap().build)());
     let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 4);
     let job = || Job::new(mesh.clone(), plan.clone(), u64::MAX).unwrap().shaded();
