@@ -134,10 +134,15 @@ impl Session {
         let fresh = self.refined.take().filter(|(p, r)| *p == plan && Arc::ptr_eq(r.mesh(), &mesh));
         let refined = match fresh {
             Some((_, refined)) => refined,
-            None => refine(Job::new(mesh, plan.clone(), self.document.budget()).map_err(|error| match error {
-                RefineError::TooLarge { .. } => Failure::Budget(error.to_string()),
-                error => Failure::Command(error.to_string()),
-            })?),
+            // Shaded, as the page's are: exports have the same normals.
+            None => refine(
+                Job::new(mesh, plan.clone(), self.document.budget())
+                    .map_err(|error| match error {
+                        RefineError::TooLarge { .. } => Failure::Budget(error.to_string()),
+                        error => Failure::Command(error.to_string()),
+                    })?
+                    .shaded(),
+            ),
         };
         Ok(&self.refined.insert((plan, refined)).1)
     }

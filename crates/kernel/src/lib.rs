@@ -57,7 +57,7 @@ impl Kernel {
     pub fn start(&self, plan: &[u8], budget: f64) -> Result<Run, String> {
         let mesh = self.mesh.clone().ok_or("there is no mesh to refine")?;
         let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
-        Job::new(mesh, plan, budget as u64).map(Run).map_err(|e| e.to_string())
+        Job::new(mesh, plan, budget as u64).map(|job| Run(job.shaded())).map_err(|e| e.to_string())
     }
 }
 

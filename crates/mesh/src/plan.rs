@@ -16,6 +16,7 @@ use crate::fairing::Fairing;
 use crate::limit::LimitRule;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
+use crate::patch;
 use crate::refine::{Kept, RefineError};
 use crate::scheme::{Accepts, Boundary, Entry, Honours, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
@@ -96,11 +97,11 @@ impl Plan {
     }
 
     /// Whether the plan is one of those that are chosen most: a common scheme alone, on a mesh without creases, holes, ties,
-    /// colours and texture coordinates; or the mesh itself. A build without the feature `full` has the code for these. This is the one
-    /// place to say so of something new.
+    /// colours and texture coordinates, as far as it goes level by level; or the mesh itself. A build without the feature `full` has
+    /// the code for these. This is the one place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
         let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
-        let plain = self.scheme.common && self.later.is_empty();
+        let plain = self.scheme.common && self.later.is_empty() && self.level < patch::SHALLOWEST;
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
         let bare = mesh.colors.is_empty() && mesh.uv.is_none() && mesh.tied.is_empty();
         let shown = mesh.holes.is_empty() && self.rules.boundary != Boundary::None;

@@ -157,6 +157,7 @@ fn what_the_first_module_can_make() {
         assert_eq!(fair(3).is_common(&plain), common, "what comes after the last level is not made");
         let moves = scheme.limit != LimitRule::Itself;
         assert_eq!(Plan { limit: true, ..plan.clone() }.is_common(&plain), common && !moves);
+        assert!(!plan.to(3).is_common(&plain), "deep levels are made of patches");
         let later = vec![Run { from: 1, scheme, params: Params::default() }];
         assert!(!Plan { later, ..plan.clone() }.is_common(&plain));
         assert!(plan.is_here(&creased), "tests have everything");

@@ -43,6 +43,8 @@ use layout::Layout;
 use std::ops::Range;
 use worker::{Start, Target, Worker};
 
+/// The first level that is made of patches: they start at level 1 and are cut twice at least.
+pub(crate) const SHALLOWEST: u32 = 3;
 /// How deep a patch is cut at most: deeper ones would leave the caches.
 pub(crate) const DEEPEST: u32 = MOST_STEPS.ilog2();
 
@@ -66,7 +68,7 @@ pub(crate) fn start(mesh: &Mesh, plan: &Plan, steps: &[Step]) -> Option<u32> {
     let first = (plan.level - run).max(plan.level.saturating_sub(DEEPEST)).max(1);
     // Fairing happens at levels on the way.
     let first = plan.fairings.iter().filter(|f| f.iterations > 0).map(|f| f.at).fold(first, u32::max);
-    (first + 2 <= plan.level).then_some(first)
+    (first + SHALLOWEST - 1 <= plan.level).then_some(first)
 }
 
 /// What became of a slice of work.
