@@ -41,6 +41,7 @@ pub mod order;
 mod owned;
 pub mod pack;
 pub mod pair;
+#[cfg(feature = "full")]
 mod patch;
 pub mod plan;
 pub mod refine;
@@ -68,6 +69,7 @@ pub use crease::Creases;
 pub use fairing::Fairing;
 pub use limit::{Limit, LimitRule, limit};
 pub use mesh::{Mesh, Stats, TopologyError};
+#[cfg(feature = "full")]
 pub use patch::{Drag, Moved};
 pub use plan::{Plan, Run};
 pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine};

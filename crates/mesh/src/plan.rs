@@ -16,7 +16,6 @@ use crate::fairing::Fairing;
 use crate::limit::LimitRule;
 use crate::marks::INFINITE;
 use crate::mesh::Mesh;
-use crate::patch;
 use crate::refine::{Kept, RefineError};
 use crate::scheme::{Accepts, Boundary, Entry, Honours, MOST_PARAMS, Params, Rules, Tags};
 use crate::split::{Split, Triangles};
@@ -51,6 +50,9 @@ pub struct Run {
     /// Its parameters.
     pub params: Params,
 }
+
+/// The first level that is made of patches (`patch/`): they start at level 1 and are cut twice at least.
+pub(crate) const PATCHED: u32 = 3;
 
 /// One step of a plan on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +103,7 @@ impl Plan {
     /// the code for these. This is the one place to say so of something new.
     pub fn is_common(&self, mesh: &Mesh) -> bool {
         let closed = self.fairings.iter().all(|f| f.at > self.level) && !self.projects();
-        let plain = self.scheme.common && self.later.is_empty() && self.level < patch::SHALLOWEST;
+        let plain = self.scheme.common && self.later.is_empty() && self.level < PATCHED;
         let smooth = mesh.edge_sharpness.is_empty() && mesh.vertex_sharpness.is_empty();
         let bare = mesh.colors.is_empty() && mesh.uv.is_none() && mesh.tied.is_empty();
         let shown = mesh.holes.is_empty() && self.rules.boundary != Boundary::None;

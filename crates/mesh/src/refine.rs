@@ -250,22 +250,25 @@ impl Job {
 
     /// Fills the buffers of a level that is not needed any more, where patches make the last levels: memory that was touched
     /// before costs half as much. If it was made of the same half-edges by the same splits, its corners stay as they are.
+    #[cfg(feature = "full")]
     pub fn reusing(mut self, old: Refined) -> Job {
         let same = old.counts == self.last_counts() && old.level == self.plan.level && old.hidden == 0;
         let same = same && self.steps.last().is_some_and(|s| s.split == old.split);
-        if FULL && same && self.mesh.topology == old.mesh.topology {
+        if same && self.mesh.topology == old.mesh.topology {
             self.geometry.reuse(old);
         }
         self
     }
 
     /// Counts of the last level.
+    #[cfg(feature = "full")]
     fn last_counts(&self) -> Counts {
         let all = self.steps.iter().try_fold(self.mesh.counts(), |counts, step| step.split.counts(counts));
         all.unwrap_or_default()
     }
 
     /// Makes every level from the one before, where patches would make the last ones at once (`patch/`): the slow twin of these.
+    #[cfg(feature = "full")]
     pub fn level_by_level(mut self) -> Job {
         self.geometry.no_patches();
         self

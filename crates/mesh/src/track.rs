@@ -10,6 +10,8 @@
 //! A track works off rows until its quota is used up and goes on from there the next time. Memory: two levels at once. What
 //! [`Plan::is_here`] leaves to builds with everything stands behind `FULL` here.
 
+// Types of fields and calls are left out where there is nothing: even an empty box has code that drops it.
+#[cfg(feature = "full")]
 mod patched;
 
 use crate::FULL;
@@ -21,6 +23,7 @@ use crate::holes;
 use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::owned::Owned;
+#[cfg(feature = "full")]
 use crate::patch::{self, Patches};
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
@@ -77,6 +80,7 @@ pub(crate) struct Track {
     pub(crate) limit: Option<Projection>,
     /// The level from which patches make the last one, and they.
     patches_from: Option<u32>,
+    #[cfg(feature = "full")]
     patches: Option<Box<Patches>>,
     /// Whether normals are wanted of patches, and these.
     pub(crate) shaded: bool,
@@ -135,6 +139,7 @@ impl Track {
             limit: limit.filter(|_| FULL).map(Projection::new),
             knots: Vec::new(),
             patches_from: None,
+            #[cfg(feature = "full")]
             patches: None,
             shaded: false,
             listed_before: false,
@@ -147,7 +152,10 @@ impl Track {
         if !uv {
             track.source = holes::sources(mesh, plan.rules.boundary);
             track.listed |= !track.source.is_empty();
-            track.patches_from = if FULL && !track.listed { patch::start(mesh, plan, steps) } else { None };
+            #[cfg(feature = "full")]
+            if !track.listed {
+                track.patches_from = patch::start(mesh, plan, steps);
+            }
         }
         if !idle {
             track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
@@ -180,7 +188,7 @@ impl Track {
 
     /// How the next level, or all that are left, are made.
     fn first_stage(&self) -> Stage {
-        if self.patches_from == Some(self.level) { Stage::Patches } else { Stage::Points(Cursor::default()) }
+        if FULL && self.patches_from == Some(self.level) { Stage::Patches } else { Stage::Points(Cursor::default()) }
     }
 
     /// What is left to be done with the last level.
@@ -338,7 +346,8 @@ impl Track {
         }
         let at = steps.get(self.level as usize)?;
         let (split, following) = (at.split, steps.get(self.level as usize + 1));
-        if FULL && self.stage == Stage::Patches {
+        #[cfg(feature = "full")]
+        if self.stage == Stage::Patches {
             return self.patch(level, mesh, plan, steps, quota);
         }
         if FULL && self.uv && !split.keeps_corners() {

@@ -33,7 +33,7 @@ mod ring;
 mod worker;
 
 use crate::mesh::Mesh;
-use crate::plan::{Plan, Step};
+use crate::plan::{PATCHED, Plan, Step};
 use crate::scheme::{Boundary, Rules, Tags};
 use crate::split::{Level, on};
 use crate::topology::{Connectivity, Counts};
@@ -43,8 +43,6 @@ use layout::Layout;
 use std::ops::Range;
 use worker::{Start, Target, Worker};
 
-/// The first level that is made of patches: they start at level 1 and are cut twice at least.
-pub(crate) const SHALLOWEST: u32 = 3;
 /// How deep a patch is cut at most: deeper ones would leave the caches.
 pub(crate) const DEEPEST: u32 = MOST_STEPS.ilog2();
 
@@ -68,7 +66,7 @@ pub(crate) fn start(mesh: &Mesh, plan: &Plan, steps: &[Step]) -> Option<u32> {
     let first = (plan.level - run).max(plan.level.saturating_sub(DEEPEST)).max(1);
     // Fairing happens at levels on the way.
     let first = plan.fairings.iter().filter(|f| f.iterations > 0).map(|f| f.at).fold(first, u32::max);
-    (first + SHALLOWEST - 1 <= plan.level).then_some(first)
+    (first + PATCHED - 1 <= plan.level).then_some(first)
 }
 
 /// What became of a slice of work.
