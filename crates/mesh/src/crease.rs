@@ -281,12 +281,14 @@ impl Creases {
     }
 
     /// Whether `v` is sharp, or an end of a sharp edge.
+    #[cfg(feature = "full")]
     #[inline(always)]
     pub(crate) fn is_marked(&self, v: u32) -> bool {
         self.flags[v as usize] != 0
     }
 
     /// Whether what becomes of an edge inside a ring of faces can be told from that ring's edges.
+    #[cfg(feature = "full")]
     pub(crate) fn is_local(&self, decay: Decay) -> bool {
         let fades = || self.sharp.iter().any(|&e| self.edges[e as usize] < INFINITE);
         self.beyond.is_empty() && (decay == Decay::Uniform || !fades())

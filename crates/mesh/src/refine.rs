@@ -243,8 +243,9 @@ impl Job {
     }
 
     /// Makes normals along with the points where that is cheaper than afterwards: [`Refined::known_normals`].
+    #[cfg(feature = "full")]
     pub fn shaded(mut self) -> Job {
-        self.geometry.shaded = FULL;
+        self.geometry.patched.shaded = true;
         self
     }
 
@@ -302,11 +303,14 @@ impl Job {
     pub fn finish(mut self) -> Refined {
         while !self.step(usize::MAX) {}
         let normals = self.geometry.limit.take().map(|l| l.normals);
-        let shading = std::mem::take(&mut self.geometry.normals);
+        #[cfg(feature = "full")]
+        let shading = std::mem::take(&mut self.geometry.patched.normals);
         let mut refined = self.gather();
-        refined.known_normals = Some(shading).filter(|n| !n.is_empty());
-        refined.known_normals =
-            refined.known_normals.or(normals.filter(|_| FULL).map(|n| complete(n, &refined.points, &refined.faces)));
+        refined.known_normals = normals.filter(|_| FULL).map(|n| complete(n, &refined.points, &refined.faces));
+        #[cfg(feature = "full")]
+        if !shading.is_empty() {
+            refined.known_normals = Some(shading);
+        }
         refined
     }
 

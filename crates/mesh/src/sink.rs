@@ -50,6 +50,7 @@ pub struct Cursor {
     row: u32,
 }
 
+#[cfg(feature = "full")]
 impl Cursor {
     /// Before a row of a pass.
     pub(crate) fn at(pass: u32, row: u32) -> Cursor {

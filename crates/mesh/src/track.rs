@@ -14,6 +14,9 @@
 #[cfg(feature = "full")]
 mod patched;
 
+#[cfg(feature = "full")]
+pub(crate) use patched::Patched;
+
 use crate::FULL;
 use crate::charts::{self, Channel};
 use crate::crease::Creases;
@@ -24,7 +27,7 @@ use crate::limit::Projection;
 use crate::mesh::Mesh;
 use crate::owned::Owned;
 #[cfg(feature = "full")]
-use crate::patch::{self, Patches};
+use crate::patch;
 use crate::plan::{Plan, Step};
 use crate::refine::{Kept, sharp_at};
 use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
@@ -78,21 +81,16 @@ pub(crate) struct Track {
     listed: bool,
     /// If the last level goes to the limit.
     pub(crate) limit: Option<Projection>,
-    /// The level from which patches make the last one, and they.
-    patches_from: Option<u32>,
+    /// What patches make.
     #[cfg(feature = "full")]
-    patches: Option<Box<Patches>>,
-    /// Whether normals are wanted of patches, and these.
-    pub(crate) shaded: bool,
-    /// Whether `corners` are there already.
-    listed_before: bool,
-    pub(crate) normals: Vec<[f32; 3]>,
+    pub(crate) patched: Patched,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stage {
     Fair(u32, Cursor),
     Points(Cursor),
+    #[cfg(feature = "full")]
     Patches,
     Wide(Cursor),
     HalfEdges(u32),
@@ -138,12 +136,8 @@ impl Track {
             lone: Vec::new(),
             limit: limit.filter(|_| FULL).map(Projection::new),
             knots: Vec::new(),
-            patches_from: None,
             #[cfg(feature = "full")]
-            patches: None,
-            shaded: false,
-            listed_before: false,
-            normals: Vec::new(),
+            patched: Patched::default(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
@@ -154,7 +148,7 @@ impl Track {
             track.listed |= !track.source.is_empty();
             #[cfg(feature = "full")]
             if !track.listed {
-                track.patches_from = patch::start(mesh, plan, steps);
+                track.patched.from = patch::start(mesh, plan, steps);
             }
         }
         if !idle {
@@ -188,7 +182,11 @@ impl Track {
 
     /// How the next level, or all that are left, are made.
     fn first_stage(&self) -> Stage {
-        if FULL && self.patches_from == Some(self.level) { Stage::Patches } else { Stage::Points(Cursor::default()) }
+        #[cfg(feature = "full")]
+        if self.patched.from == Some(self.level) {
+            return Stage::Patches;
+        }
+        Stage::Points(Cursor::default())
     }
 
     /// What is left to be done with the last level.
@@ -445,7 +443,7 @@ impl Track {
                     return Some(next);
                 }
             }
-            Stage::Fair(..) | Stage::Patches | Stage::Limit(_) | Stage::Done => {}
+            _ => {}
         }
         None
     }

@@ -67,6 +67,7 @@ pub(super) const fn fractal() -> Entry {
         return Entry {
             info: INFO,
             common: false,
+            #[cfg(feature = "full")]
             ring: false,
             limit: LimitRule::Analysis,
             honours: Honours::ALL,
@@ -77,6 +78,7 @@ pub(super) const fn fractal() -> Entry {
     Entry {
         info: INFO,
         common: false,
+        #[cfg(feature = "full")]
         ring: false,
         limit: LimitRule::Analysis,
         honours: Honours::ALL,

@@ -15,22 +15,35 @@ use crate::refined::{Faces, Refined};
 use crate::sink::Cursor;
 use crate::split::Level;
 
+/// What a track has of patches.
+#[derive(Debug, Default)]
+pub(crate) struct Patched {
+    /// The level from which they make the last one.
+    pub(super) from: Option<u32>,
+    patches: Option<Box<Patches>>,
+    /// Whether normals are wanted of them, and these.
+    pub(crate) shaded: bool,
+    pub(crate) normals: Vec<[f32; 3]>,
+    /// Whether corners are there already.
+    listed: bool,
+}
+
 impl Track {
     /// Takes the buffers of a level with the same counts and faces.
     pub(crate) fn reuse(&mut self, old: Refined) {
-        if self.patches_from.is_none() || !self.new_points.is_empty() {
+        if self.patched.from.is_none() || !self.new_points.is_empty() {
             return;
         }
         self.new_points = old.points;
-        self.normals = old.known_normals.filter(|_| self.shaded).unwrap_or_default();
+        self.patched.normals = old.known_normals.filter(|_| self.patched.shaded).unwrap_or_default();
         if let Faces::Quads(corners) | Faces::Triangles(corners) = old.faces {
-            (self.corners, self.listed_before) = (corners, true);
+            (self.corners, self.patched.listed) = (corners, true);
         }
     }
 
     /// Takes no patches.
     pub(crate) fn no_patches(&mut self) {
-        self.patches_from = None;
+        self.patched.from = None;
     }
 
     /// Makes the last level of patches.
@@ -45,38 +58,38 @@ impl Track {
         let step = steps.get(self.level as usize)?;
         let sharp = sharp_at(steps, self.level, mesh, &self.corner);
         let tags = plan.tags(step, self.level, sharp, self.creases.as_ref());
-        if self.patches.is_none() {
-            self.patches = Patches::new(*step, plan.rules, plan.level - self.level, self.counts).map(Box::new);
+        if self.patched.patches.is_none() {
+            self.patched.patches = Patches::new(*step, plan.rules, plan.level - self.level, self.counts).map(Box::new);
         }
-        let progress = match &mut self.patches {
+        let progress = match &mut self.patched.patches {
             Some(patches) => {
                 let [counts, _] = patches.counts();
                 zeroed(&mut self.new_points, counts.vertices as usize);
                 zeroed(
-                    &mut self.normals,
-                    if self.shaded && patches.can_shade() { counts.vertices as usize } else { 0 },
+                    &mut self.patched.normals,
+                    if self.patched.shaded && patches.can_shade() { counts.vertices as usize } else { 0 },
                 );
                 zeroed(&mut self.corners, counts.corners as usize);
-                let (points, normals) = (&mut self.new_points[..], &mut self.normals[..]);
-                let corners = if self.listed_before { &mut [] } else { &mut self.corners[..] };
+                let (points, normals) = (&mut self.new_points[..], &mut self.patched.normals[..]);
+                let corners = if self.patched.listed { &mut [] } else { &mut self.corners[..] };
                 let old = self.points.as_deref().unwrap_or(&mesh.positions);
                 patches.work(level, &tags, old, &mut patch::Out { points, normals, corners }, quota)
             }
             None => patch::Progress::Unfit,
         };
-        match (progress, self.patches.take()) {
+        match (progress, self.patched.patches.take()) {
             (patch::Progress::Done, Some(patches)) => {
                 self.level = plan.level;
                 [self.counts, self.before] = patches.counts();
                 self.points = Some(std::mem::take(&mut self.new_points));
                 return Some(None);
             }
-            (patch::Progress::More, patches) => self.patches = patches,
+            (patch::Progress::More, patches) => self.patched.patches = patches,
             _ => {
                 // Marks fade, and rings become alike: perhaps from the next level on.
-                self.patches_from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
-                (self.new_points, self.normals, self.corners) = Default::default();
-                self.listed_before = false;
+                self.patched.from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
+                (self.new_points, self.patched.normals, self.corners) = Default::default();
+                self.patched.listed = false;
                 self.stage = Stage::Points(Cursor::default());
             }
         }
