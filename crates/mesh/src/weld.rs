@@ -78,12 +78,13 @@ fn exact(positions: &[[f32; 3]], parts: &[u32]) -> Vec<u32> {
         let [x, y, z] = positions[i].map(|x| (x + 0.0).to_bits());
         [x, y, z, part(parts, i)]
     };
-    // A triangle's corner is one of six with its position, as a rule: the table grows where it is not.
-    let (mut slots, mut used) = (table(positions.len() / 8), 0);
+    // A triangle's corner is one of six with its position, as a rule: the table grows where it is not. (Not in the page's first
+    // module, where code counts more.)
+    let (mut slots, mut used) = (table(positions.len() / if crate::FULL { 8 } else { 1 }), 0);
     let mut class: Vec<u32> = Vec::with_capacity(positions.len());
     let mut at = [0; BLOCK];
     while class.len() < positions.len() {
-        if 2 * (used + BLOCK) > slots.len() {
+        if crate::FULL && 2 * (used + BLOCK) > slots.len() {
             slots = table(slots.len().max(BLOCK));
             let mask = slots.len() - 1;
             for i in (0..class.len()).filter(|&i| class[i] == i as u32) {
@@ -100,7 +101,9 @@ fn exact(positions: &[[f32; 3]], parts: &[u32]) -> Vec<u32> {
         // Slots, and what stands there, are fetched by all of a block before any has to wait for its answer.
         for (s, i) in at.iter_mut().zip(block.clone()) {
             *s = slot(key(i), mask);
-            std::hint::black_box(positions[from.min(slots[*s] as usize)]);
+            if crate::FULL {
+                std::hint::black_box(positions[from.min(slots[*s] as usize)]);
+            }
         }
         for (&s, i) in at.iter().zip(block) {
             let (k, mut s) = (key(i), s);
