@@ -247,7 +247,7 @@ impl Patches {
             use rayon::prelude::*;
             return workers.par_iter_mut().zip(ranges).zip(&mut targets).map(work).all(|fit| fit);
         }
-        workers.iter_mut().zip(ranges).zip(&mut targets).map(work).all(|fit| fit)
+        workers.iter_mut().zip(ranges).zip(&mut targets).all(work)
     }
 
     /// Patches in as many ranges as there are threads: one, unless there is much to do and the feature `parallel` is on.

@@ -67,7 +67,6 @@ pub(super) const fn fractal() -> Entry {
         return Entry {
             info: INFO,
             common: false,
-            #[cfg(feature = "full")]
             ring: false,
             limit: LimitRule::Analysis,
             honours: Honours::ALL,
@@ -78,7 +77,6 @@ pub(super) const fn fractal() -> Entry {
     Entry {
         info: INFO,
         common: false,
-        #[cfg(feature = "full")]
         ring: false,
         limit: LimitRule::Analysis,
         honours: Honours::ALL,

@@ -302,7 +302,7 @@ pub struct Entry {
     /// [`Scheme::COMMON`].
     pub common: bool,
     /// [`Scheme::RING`].
-    #[cfg(feature = "full")]
+    #[cfg_attr(not(feature = "full"), expect(dead_code))]
     pub(crate) ring: bool,
     /// Which marks mean something to it.
     pub honours: Honours,
@@ -331,16 +331,7 @@ const fn entry<S: Scheme>() -> Entry {
     };
     // Papers are told about by the build that has their rules.
     let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
-    Entry {
-        #[cfg(feature = "full")]
-        ring: S::RING,
-        info,
-        common: S::COMMON,
-        honours,
-        limit: S::LIMIT,
-        eval,
-        record,
-    }
+    Entry { info, common: S::COMMON, ring: S::RING, honours, limit: S::LIMIT, eval, record }
 }
 
 /// Which kinds of levels a scheme can meet follows from what it takes and makes; the others are not compiled.

@@ -42,7 +42,6 @@ pub(super) const fn quad_triangle() -> Entry {
     Entry {
         info: QuadTriangle::INFO,
         common: QuadTriangle::COMMON,
-        #[cfg(feature = "full")]
         ring: false,
         honours: Honours::ALL,
         limit: QuadTriangle::LIMIT,
