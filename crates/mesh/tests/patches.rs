@@ -38,6 +38,20 @@ fn check(soup: &Soup, id: &str, level: u32, boundary: Boundary, what: &str) -> b
     true
 }
 
+/// So many faces at a vertex that no table would pay: the general engine makes them.
+#[test]
+fn poles_agree() {
+    for closed in [false, true] {
+        let soup = common::fan(300, closed);
+        check(&soup, "catmull-clark", 3, Boundary::default(), "a fan of 300");
+        check(&soup, "loop", 3, Boundary::default(), "a fan of 300");
+    }
+    let half = common::half_pole(20_000);
+    let plan = Plan::new(scheme("loop").unwrap(), Boundary::EdgeOnly, 3);
+    let job = || Job::new(build(&half), plan.clone(), u64::MAX).unwrap();
+    assert_eq!(job().finish().points, job().level_by_level().finish().points);
+}
+
 const BOUNDARIES: [Boundary; 2] = [Boundary::EdgeAndCorner, Boundary::EdgeOnly];
 
 #[test]

@@ -11,11 +11,14 @@
 //! Equal keys mean equal rules, so whatever is a linear function of the ring is the same function for all patches of a key.
 //! The ring is unfolded: a vertex that it meets twice is listed twice.
 //!
-//! Cost: about a walk over twins a corner. Limit: patches at an inner vertex of two faces, and triangles with two corners of
+//! Cost: about a walk over twins a corner. Limit: patches at an inner vertex of two faces or one of over 256, and triangles with two corners of
 //! valence three, have no ring.
 
 use crate::scheme::Tags;
 use crate::topology::{Connectivity, is_boundary};
+
+/// Faces at a corner that a ring may have: a table of more would not pay, and keys have room for so many.
+const MOST_SPOKES: usize = 256;
 
 /// How the faces around a corner lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +131,7 @@ impl Ring {
                     Fan::Rim(behind, self.spokes.len() - 1 - behind)
                 }
             };
-            if fan == Fan::Inner(2) {
+            if fan == Fan::Inner(2) || self.spokes.len() > MOST_SPOKES {
                 return false;
             }
             threes += usize::from(sides == 3 && fan == Fan::Inner(3));

@@ -39,6 +39,13 @@ pub fn half_fans() -> impl Iterator<Item = (String, Soup)> {
     })
 }
 
+/// `n` triangles at one vertex of the boundary.
+pub fn half_pole(n: u32) -> Soup {
+    let rim = (0..=n).map(|i| (std::f64::consts::PI * f64::from(i) / f64::from(n)).sin_cos());
+    let positions = [[0.0; 3]].into_iter().chain(rim.map(|(y, x)| [x as f32, y as f32, 0.0])).collect();
+    Soup::from_faces(positions, &(1..=n).map(|i| [0, i, i + 1]).collect::<Vec<_>>())
+}
+
 /// A prism over an n-gon: quads and two n-gons.
 pub fn prism(n: u32) -> Soup {
     let mut positions = Vec::new();
