@@ -17,8 +17,9 @@
 #[allow(dead_code)]
 mod tables;
 
+use limn_compute::{Tables, Values, fused, rules};
 use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme, shape, triangulate_soup};
-use limn_render::refine::{Compute, Refiner, Values};
+use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Gpu, Tier};
 use std::time::Instant;
 
@@ -98,18 +99,17 @@ fn main() {
             let plan = Plan::new(scheme(id).expect("a scheme"), Boundary::default(), level);
             let Ok(Some(predicted)) = limn_mesh::predict(&mesh, &plan) else { continue };
             let faces = predicted.counts.faces;
-            let rules = tables::fused(&mesh, &plan);
+            let rules = rules(&mesh, &plan);
             // Rows are recorded on the CPU first, which takes minutes for millions of faces.
             if !row.contains(&word) || faces > most || (rules.is_none() && faces > 500_000) {
                 continue;
             }
-            let prepared = tables::Tables::of(&mesh);
+            let prepared = Tables::of(&mesh);
             let refined = if rules.is_none() { refine(&mesh, &plan, u64::MAX).ok() } else { None };
             let mut make = || match (&rules, &refined) {
-                (Some(rules), _) => {
-                    Refiner::fused(&gpu, &mut compute, &prepared.cage(&mesh), rules, level, Values::Points)
-                        .map_err(|e| e.to_string())
-                }
+                (Some(rules), _) => fused(&prepared.cage(&mesh), rules, level, Values::Points, limits(&gpu))
+                    .map_err(|e| e.to_string())
+                    .and_then(|program| Refiner::new(&gpu, &mut compute, &program).map_err(|e| e.to_string())),
                 (None, Some(refined)) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined, Values::Points)),
                 (None, None) => Err("it cannot be refined".to_owned()),
             };

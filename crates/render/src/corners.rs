@@ -137,7 +137,7 @@ fn newell(points: &[[f32; 3]], polygon: &[u32]) -> [f32; 3] {
 }
 
 /// The six edge bits of one triangle of a polygon of `n` corners.
-pub(crate) fn edge_flags(local: [u32; 3], global: [u32; 3], n: u32, parents: Option<[u32; 2]>) -> u32 {
+pub fn edge_flags(local: [u32; 3], global: [u32; 3], n: u32, parents: Option<[u32; 2]>) -> u32 {
     let mut flags = 0;
     for c in 0..3 {
         let (i, j) = ((c + 1) % 3, (c + 2) % 3);

@@ -82,15 +82,6 @@ pub enum Error {
         /// The face.
         face: u64,
     },
-    /// Half-edges that do not fit together.
-    #[cfg(feature = "compute")]
-    #[error("{what} {at} of the mesh does not fit its neighbours, so it cannot be refined on the graphics adapter")]
-    HalfEdges {
-        /// Face, half-edge or vertex.
-        what: &'static str,
-        /// Its number.
-        at: u64,
-    },
     /// Reading a picture back failed.
     #[error("the picture could not be read back from the graphics adapter: {0}")]
     Readback(String),

@@ -209,6 +209,7 @@ pub(crate) struct Run {
 }
 
 /// One buffer of a run of elements: `first` is the number of its first element in the whole.
+#[derive(Clone)]
 pub(crate) struct Chunk {
     pub buffer: wgpu::Buffer,
     /// Texture coordinates and colours of the same corners.
@@ -218,6 +219,7 @@ pub(crate) struct Chunk {
     pub capacity: u64,
 }
 
+#[derive(Clone)]
 pub(crate) enum Layout {
     /// Vertex buffer, its vertex count, colours; the chunks hold indices.
     Shared { vertices: wgpu::Buffer, count: u32, colors: Option<wgpu::Buffer>, kinds: [u32; 2] },
@@ -225,7 +227,8 @@ pub(crate) enum Layout {
     Corners { extras: bool },
 }
 
-/// A surface on the GPU.
+/// A surface on the GPU. Copies share their buffers.
+#[derive(Clone)]
 pub struct Surface {
     pub(crate) layout: Layout,
     pub(crate) chunks: Vec<Chunk>,
@@ -237,6 +240,53 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// A surface whose buffers are filled by compute, in the layout that [`Upload`](crate::Upload) gives them. `shape` is the number of
+    /// vertices, the vertices where face points and edge points begin (both 0 for triangles, which have corners), and the face at which
+    /// each buffer of indices or corners ends. The buffers are labelled `refined`, and made in the order of [`Surface::filled`].
+    pub fn reserve(gpu: &Gpu, shape: &[u32]) -> Surface {
+        let base = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let [count, a, b, ends @ ..] = shape else { return Surface::reserve(gpu, &[0; 3]) };
+        let (layout, usage, [elements, bytes]) = if *b > 0 {
+            let vertices = buffer(
+                gpu,
+                "refined",
+                u64::from(*count) * 16,
+                base | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
+            );
+            let layout = Layout::Shared { vertices, count: *count, colors: None, kinds: [*a, *b] };
+            (layout, base | wgpu::BufferUsages::INDEX, [6, 4])
+        } else {
+            (Layout::Corners { extras: false }, base | wgpu::BufferUsages::VERTEX, [3, 24])
+        };
+        let mut first = 0;
+        let chunk = |&end: &u32| {
+            let count = u64::from(end) * elements - first;
+            let buffer = buffer(gpu, "refined", count * bytes, usage);
+            let chunk = Chunk { buffer, extra: None, first, count, capacity: count };
+            first += count;
+            chunk
+        };
+        let chunks = ends.iter().map(chunk).collect();
+        let (runs, parts) =
+            (vec![Run { part: 0, first: 0, count: first }], vec![Part { material: u32::MAX, group: 0 }]);
+        Surface { layout, chunks, runs, parts, has_uv: false, has_colors: false, bounds: Bounds::EMPTY }
+    }
+
+    /// The buffers that compute fills: vertices that faces share, then those of faces.
+    #[cfg(feature = "compute")]
+    pub(crate) fn filled(&self) -> Vec<wgpu::Buffer> {
+        let vertices = match &self.layout {
+            Layout::Shared { vertices, .. } => Some(vertices),
+            Layout::Corners { .. } => None,
+        };
+        vertices.into_iter().chain(self.chunks.iter().map(|c| &c.buffer)).cloned().collect()
+    }
+
+    /// The box of what compute filled in.
+    pub fn set_bounds(&mut self, bounds: Bounds) {
+        self.bounds = bounds;
+    }
+
     /// Box around all points that were uploaded.
     pub fn bounds(&self) -> Bounds {
         self.bounds

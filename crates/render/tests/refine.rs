@@ -6,11 +6,12 @@ mod common;
 mod tables;
 
 use common::renderer;
+use limn_compute::{Cage, Limits, Rules, Scheme, Tables, Values, fused, fused_bytes, program, rules};
 use limn_mesh::{
     Accepts, Boundary, Decay, Fairing, Mesh, Params, Plan, Refined, Run, SCHEMES, Soup, TriangleRule, Weld, bounds,
     refine, scheme, shape, triangulate_soup,
 };
-use limn_render::refine::{Cage, Compute, Refiner, Rules, Scheme, Values};
+use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Bounds, Edges, Error, Gpu, Renderer, Style, Surface, SurfaceData};
 use std::sync::Arc;
 
@@ -127,6 +128,9 @@ impl Check {
         let (points, normals) = compare(&read, refined);
         assert!(points <= 1e-5, "{what}: points are off by {points:e} of the box");
         assert!(normals <= 1e-3, "{what}: normals are off by {normals:e}");
+        // The box that the adapter found is that of its own points.
+        let [low, high] = bounds(&read.iter().map(|v| v.0).collect::<Vec<_>>());
+        assert_eq!(tables::read_bounds(self.gpu(), refiner), Some([low, high]), "{what}");
         self.compared += 1;
     }
 
@@ -150,7 +154,7 @@ impl Check {
     /// Refines both ways, where there are two.
     fn plan(&mut self, mesh: &Arc<Mesh>, plan: &Plan, what: &str, rows_too: bool) {
         let Ok(refined) = refine(mesh, plan, BUDGET) else { return };
-        let rules = tables::fused(mesh, plan);
+        let rules = rules(mesh, plan);
         if let Some(rules) = &rules {
             let refiner =
                 tables::by_kernels(self.renderer.gpu(), &mut self.compute, mesh, rules, plan.level, Values::Points);
@@ -253,6 +257,24 @@ fn every_valence() {
     }
 }
 
+/// Adapters end at 65,535 groups in one dimension: levels beyond take two, here from the third group on.
+#[test]
+fn more_groups_than_one_dimension_takes() {
+    let Some(mut check) = Check::new() else { return };
+    for id in ["catmull-clark", "loop", "doo-sabin", "sqrt3"] {
+        let soup = named("cube");
+        let mesh = build(&if id == "loop" || id == "sqrt3" { triangles(&soup) } else { soup });
+        let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 5);
+        let few = Limits { groups: 2, ..limits(check.gpu()) };
+        let program = program(&mesh, &plan, few).unwrap().unwrap();
+        assert!(program.each.iter().any(|d| d.grid[1] > 2), "{id}");
+        let mut refiner = Refiner::new(check.renderer.gpu(), &mut check.compute, &program).unwrap();
+        refiner.set_points(check.gpu(), 0, &mesh.positions).unwrap();
+        refiner.refine(check.gpu());
+        check.same(&refiner, &refine(&mesh, &plan, BUDGET).unwrap(), id);
+    }
+}
+
 /// New positions in the same buffers; half-edges are not made again.
 #[test]
 fn a_cage_that_moves() {
@@ -261,7 +283,7 @@ fn a_cage_that_moves() {
     for id in ["catmull-clark", "doo-sabin"] {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 3);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
-        let mut refiner = match tables::fused(&mesh, &plan) {
+        let mut refiner = match rules(&mesh, &plan) {
             Some(rules) => {
                 tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, 3, Values::Points)
             }
@@ -294,7 +316,7 @@ fn pictures_of_both_are_one() {
         let mesh = build(&soup);
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
-        let refiner = match tables::fused(&mesh, &plan) {
+        let refiner = match rules(&mesh, &plan) {
             Some(rules) => {
                 tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, level, Values::Points)
             }
@@ -326,7 +348,7 @@ fn colours_go_the_same_way() {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 2);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
         let (gpu, compute) = (check.renderer.gpu(), &mut check.compute);
-        let [points, colors] = [Values::Points, Values::Colors].map(|what| match tables::fused(&mesh, &plan) {
+        let [points, colors] = [Values::Points, Values::Colors].map(|what| match rules(&mesh, &plan) {
             Some(rules) => tables::by_kernels(gpu, compute, &mesh, &rules, 2, what),
             None => tables::by_rows(gpu, compute, &mesh, &plan, &refined, what),
         });
@@ -354,21 +376,19 @@ fn colours_go_the_same_way() {
 /// Tables that would hang a kernel, or that no buffer holds, come back as a sentence.
 #[test]
 fn bad_tables_and_large_levels_are_refused() {
-    let Some(mut check) = Check::new() else { return };
+    let Some(check) = Check::new() else { return };
     let mesh = build(&named("cube"));
     let rules = Rules { scheme: Scheme::CatmullClark { triangle: 0.25 }, corners: true, chaikin: false };
-    let good = tables::Tables::of(&mesh);
-    let (gpu, compute) = (check.renderer.gpu(), &mut check.compute);
-    let mut refused = |cage: &Cage<'_>, rules: &Rules, level| {
-        Refiner::fused(gpu, compute, cage, rules, level, Values::Points)
-            .err()
-            .map(|e| e.to_string())
-            .unwrap_or_default()
+    let good = Tables::of(&mesh);
+    let gpu = check.renderer.gpu();
+    let refused = |cage: &Cage<'_>, rules: &Rules, level| {
+        let program = fused(cage, rules, level, Values::Points, limits(gpu));
+        program.err().map(|e| e.to_string()).unwrap_or_default()
     };
     assert_eq!(refused(&good.cage(&mesh), &rules, 2), "");
     let half_edge =
         "half-edge 0 of the mesh does not fit its neighbours, so it cannot be refined on the graphics adapter";
-    let mut twin = good.twin.clone();
+    let mut twin = good.cage(&mesh).twin.to_vec();
     twin[0] = 5;
     assert_eq!(refused(&Cage { twin: &twin, ..good.cage(&mesh) }, &rules, 2), half_edge);
     let start = [9; 8];
@@ -382,6 +402,6 @@ fn bad_tables_and_large_levels_are_refused() {
     // 6 * 4^14 + 2 points.
     let large = refused(&good.cage(&mesh), &rules, 14);
     assert!(large.starts_with("the vertices need 25769803808 bytes in one buffer"), "{large}");
-    assert!(Refiner::fused_bytes(&good.cage(&mesh), &rules, 14) > 60 << 30);
+    assert!(fused_bytes(&good.cage(&mesh), &rules, 14) > 60 << 30);
     assert_eq!(gpu.take_errors(), [] as [String; 0]);
 }

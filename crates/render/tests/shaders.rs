@@ -41,20 +41,6 @@ fn every_module_validates_and_translates_for_webgl2() {
     }
 }
 
-/// Every variant of every kernel that refines, as it is handed to the device.
-#[test]
-fn every_kernel_validates() {
-    let kernels = limn_render::refine::shaders();
-    assert!(kernels.len() > 30);
-    for (name, source) in kernels {
-        let module =
-            naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source)));
-        Validator::new(ValidationFlags::all(), Capabilities::empty())
-            .validate(&module)
-            .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source)));
-    }
-}
-
 #[test]
 fn the_uniform_has_the_size_that_the_shaders_expect() {
     let (_, source) = limn_render::shaders().remove(0);

@@ -191,7 +191,7 @@ pub fn newest_source() -> Result<SystemTime> {
     for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"] {
         newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
     }
-    for name in ["mesh", "formats", "document", "render", "engine", "files", "kernel"] {
+    for name in ["mesh", "compute", "formats", "document", "render", "engine", "files", "kernel"] {
         newest = newest.max(newest_below(&paths::root().join("crates").join(name))?);
     }
     Ok(newest)

@@ -1,120 +1,10 @@
-//! From the kernel's meshes and plans to the plain tables that the GPU refines, and its vertices back.
+//! From the kernel's meshes and plans to refiners, and their vertices back.
 
-use limn_mesh::refine::{Recorded, record};
-use limn_mesh::sink::Source;
-use limn_mesh::{Boundary, Connectivity, Decay, Faces, Mesh, Plan, Refined, TriangleRule};
-use limn_render::refine::{Cage, Compute, Pass, Refiner, RowLevel, Rows, Rules, Scheme, Values};
+use limn_compute::{Program, Rows, Rules, Tables, Values, fused, recorded};
+use limn_mesh::{Connectivity, Faces, Mesh, Plan, Refined};
+use limn_render::corners::edge_flags;
+use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Gpu, pack};
-
-/// Level 0 in full.
-#[derive(Default)]
-pub struct Tables {
-    pub twin: Vec<u32>,
-    pub edge: Vec<u32>,
-    pub start: Vec<u32>,
-    pub sharpness: Vec<f32>,
-}
-
-impl Tables {
-    pub fn of(mesh: &Mesh) -> Tables {
-        let t = &mesh.topology;
-        let half_edges = 0..t.half_edges();
-        let sharp = |h: u32| mesh.edge_sharpness[t.edge(h) as usize];
-        Tables {
-            twin: half_edges.clone().map(|h| t.twin(h)).collect(),
-            edge: half_edges.clone().map(|h| t.edge(h)).collect(),
-            start: (0..t.vertices()).map(|v| t.vertex_half_edge(v)).collect(),
-            sharpness: if mesh.edge_sharpness.is_empty() { vec![] } else { half_edges.map(sharp).collect() },
-        }
-    }
-
-    pub fn cage<'a>(&'a self, mesh: &'a Mesh) -> Cage<'a> {
-        Cage {
-            offsets: mesh.topology.offsets(),
-            twin: &self.twin,
-            origin: mesh.topology.origins(),
-            edge: &self.edge,
-            start: &self.start,
-            stays: &mesh.sharp,
-            joined: &mesh.joined,
-            sharpness: &self.sharpness,
-            vertex_sharpness: &mesh.vertex_sharpness,
-        }
-    }
-}
-
-/// The rules of a plan that has kernels of its own on such a mesh.
-pub fn fused(mesh: &Mesh, plan: &Plan) -> Option<Rules> {
-    let creased = mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness).any(|&s| s > 0.0);
-    if !mesh.tied.is_empty() || !plan.later.is_empty() || !plan.fairings.is_empty() {
-        return None;
-    }
-    let params = plan.params.of(&plan.scheme.info);
-    let scheme = match plan.scheme.info.id {
-        "catmull-clark" => {
-            let smooth = plan.rules.triangle == TriangleRule::Smooth;
-            Scheme::CatmullClark { triangle: if smooth { 0.47 } else { 0.25 } }
-        }
-        "linear" if mesh.is_triangles() => Scheme::Triangles,
-        "linear" => Scheme::Quads,
-        "loop" => Scheme::Loop { warren: params[0] == 1.0 },
-        "butterfly" if !creased => Scheme::Butterfly { w: params[0] as f32 },
-        "modified-butterfly" if !creased => Scheme::ModifiedButterfly,
-        "sqrt3" if !creased && mesh.topology.boundary_half_edges() == 0 => Scheme::Sqrt3,
-        "doo-sabin" | "doo-sabin-midpoint" if is_all_round(mesh) => {
-            Scheme::DooSabin { midpoint: plan.scheme.info.id != "doo-sabin" }
-        }
-        _ => return None,
-    };
-    let corners = plan.rules.boundary == Boundary::EdgeAndCorner;
-    Some(Rules { scheme, corners, chaikin: plan.rules.decay == Decay::Chaikin })
-}
-
-/// Whether a mesh is closed with three and more faces around every vertex.
-fn is_all_round(mesh: &Mesh) -> bool {
-    let t = &mesh.topology;
-    let faces = |v: u32| {
-        let mut n = 0;
-        t.turn(v, |_| n += 1);
-        n
-    };
-    t.boundary_half_edges() == 0 && (0..t.vertices()).all(|v| faces(v) >= 3)
-}
-
-/// The plan's rows, step by step.
-pub fn rows(mesh: &Mesh, plan: &Plan) -> Vec<RowLevel> {
-    let mut levels: Vec<RowLevel> = Vec::new();
-    record(mesh, plan, |what| match what {
-        Recorded::Level(vertices) => levels.push(RowLevel { passes: Vec::new(), vertices }),
-        Recorded::Row(child, weights, offset) => {
-            let level = levels.last_mut().unwrap();
-            let goes_on = level.passes.last().is_some_and(|pass| {
-                let rows = pass.offsets.len() as u32 - 1;
-                let made = pass.first..pass.first + rows;
-                let reads = |(s, _): &(Source, f64)| matches!(s, Source::Child(c) if made.contains(c));
-                made.end == child && !weights.iter().any(reads)
-            });
-            if !goes_on {
-                level.passes.push(Pass { first: child, offsets: vec![0], ..Pass::default() });
-            }
-            let pass = level.passes.last_mut().unwrap();
-            pass.entries.extend(weights.iter().map(|&(source, w)| match source {
-                Source::Vertex(v) => [v, (w as f32).to_bits()],
-                Source::Child(c) => [c | Pass::CHILD, (w as f32).to_bits()],
-            }));
-            if offset != [0.0; 3] || !pass.moves.is_empty() {
-                pass.moves.resize(pass.offsets.len() - 1, [0.0; 3]);
-                pass.moves.push(offset.map(|x| x as f32));
-            }
-            pass.offsets.push(pass.entries.len() as u32);
-        }
-    })
-    .unwrap();
-    for pass in levels.iter_mut().flat_map(|l| &mut l.passes).filter(|p| !p.moves.is_empty()) {
-        pass.moves.resize(pass.offsets.len() - 1, [0.0; 3]);
-    }
-    levels
-}
 
 /// The faces of a level as the renderer has them.
 pub fn faces(refined: &Refined) -> limn_render::Faces<'_> {
@@ -136,25 +26,27 @@ pub fn parents(refined: &Refined) -> Option<[u32; 2]> {
 
 /// Refines by rows: points, or the mesh's colours.
 pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined, what: Values) -> Refiner {
-    let levels = rows(mesh, plan);
+    let levels = recorded(mesh, plan).unwrap();
     let kinds: Vec<u8> = refined.kinds.iter().map(|k| *k as u8 + 1).collect();
     let rows = Rows {
         cage: mesh.topology.vertices(),
         levels: &levels,
-        faces: faces(refined),
+        faces: &refined.faces,
         parents: parents(refined),
         kinds: &kinds,
+        flags: edge_flags,
     };
-    run(gpu, mesh, Refiner::rows(gpu, compute, &rows, what).unwrap(), what)
+    run(gpu, compute, mesh, limn_compute::rows(&rows, what, limits(gpu)).unwrap(), what)
 }
 
 /// Refines by kernels made for the scheme.
 pub fn by_kernels(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, rules: &Rules, level: u32, what: Values) -> Refiner {
     let tables = Tables::of(mesh);
-    run(gpu, mesh, Refiner::fused(gpu, compute, &tables.cage(mesh), rules, level, what).unwrap(), what)
+    run(gpu, compute, mesh, fused(&tables.cage(mesh), rules, level, what, limits(gpu)).unwrap(), what)
 }
 
-fn run(gpu: &Gpu, mesh: &Mesh, mut refiner: Refiner, what: Values) -> Refiner {
+fn run(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, program: Program, what: Values) -> Refiner {
+    let mut refiner = Refiner::new(gpu, compute, &program).unwrap();
     match what {
         Values::Points => refiner.set_points(gpu, 0, &mesh.positions).unwrap(),
         Values::Colors => refiner.set_values(gpu, 0, &mesh.colors).unwrap(),
@@ -172,9 +64,18 @@ pub fn read(gpu: &Gpu, refiner: &Refiner) -> Vec<([f32; 3], [f32; 3])> {
     read_words(gpu, refiner).into_iter().map(vertex).collect()
 }
 
+/// The box that a refiner found around its points.
+pub fn read_bounds(gpu: &Gpu, refiner: &Refiner) -> Option<[[f32; 3]; 2]> {
+    let words = words(gpu, refiner.bounds()?, 24);
+    limn_compute::bounds(words.try_into().ok()?)
+}
+
 /// The four words of every vertex that a refiner made.
 pub fn read_words(gpu: &Gpu, refiner: &Refiner) -> Vec<[u32; 4]> {
-    let bytes = u64::from(refiner.count()) * 16;
+    words(gpu, refiner.vertices(), u64::from(refiner.count()) * 16).as_chunks().0.to_vec()
+}
+
+fn words(gpu: &Gpu, from: &wgpu::Buffer, bytes: u64) -> Vec<u32> {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: bytes,
@@ -182,11 +83,10 @@ pub fn read_words(gpu: &Gpu, refiner: &Refiner) -> Vec<[u32; 4]> {
         mapped_at_creation: false,
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(refiner.vertices(), 0, &buffer, 0, bytes);
+    encoder.copy_buffer_to_buffer(from, 0, &buffer, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let mapped = buffer.slice(..).get_mapped_range().unwrap();
-    let word = |w: &[u8]| u32::from_le_bytes(w.try_into().unwrap());
-    mapped.chunks_exact(16).map(|v| [0, 4, 8, 12].map(|i| word(&v[i..i + 4]))).collect()
+    bytemuck::cast_slice(&mapped).to_vec()
 }

@@ -1,4 +1,4 @@
-//! The compute kernels of refinement: their text, put together of parts, and their pipelines, made when first needed.
+//! The compute kernels of refinement: their text, put together of parts.
 //!
 //! A kernel is one entry point with constants before its text (how many sides faces have, whether it is level 0, whether anything
 //! is creased), so that a level's arithmetic has no branch on what cannot be. Bind groups: 0 is what is read of the level, 1 what is
@@ -6,7 +6,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::Gpu;
 use crate::wgsl::wgsl;
 
 /// Invocations a workgroup, as the shaders have it.
@@ -89,13 +88,18 @@ pub(crate) enum Kernel {
     ListedCorners,
     /// Colours in four bytes.
     Colors,
+    /// The box of the points.
+    Bounds,
 }
 
 /// How a buffer is bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Access {
+pub enum Access {
+    /// The numbers of the dispatch.
     Uniform,
+    /// Read alone.
     Read,
+    /// Read and written.
     Write,
 }
 
@@ -109,6 +113,7 @@ impl Kernel {
             Kernel::ListedNormals,
             Kernel::ListedCorners,
             Kernel::Colors,
+            Kernel::Bounds,
         ];
         for (split, bits) in Split::ALL.into_iter().flat_map(|split| (0..4).map(move |bits| (split, bits))) {
             let [base, creased] = [0, 1].map(|b| bits >> b & 1 == 1);
@@ -130,18 +135,21 @@ impl Kernel {
         all
     }
 
-    fn entry(self) -> &'static str {
+    /// The name of its entry point.
+    pub fn entry(self) -> &'static str {
         match self {
             Kernel::Points(_) | Kernel::Rows { .. } => "points",
             Kernel::Split(_) => "split",
             Kernel::Normals(_) | Kernel::ListedNormals => "normals",
             Kernel::ListedCorners => "listed_corners",
             Kernel::Colors => "colors",
+            Kernel::Bounds => "bounds",
             Kernel::Faces(_) | Kernel::ListedFaces => "faces",
         }
     }
 
-    fn source(self) -> String {
+    /// Its text, as it is handed to the device.
+    pub fn source(self) -> String {
         let work = wgsl!("shaders/work.wgsl");
         let variant = match self {
             Kernel::Rows { moved } => {
@@ -151,6 +159,7 @@ impl Kernel {
                 return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
             }
             Kernel::Colors => return format!("{work}{}", wgsl!("shaders/colors.wgsl")),
+            Kernel::Bounds => return format!("{work}{}", wgsl!("shaders/bounds.wgsl")),
             Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
         };
         let Variant { split, base, creased, scheme } = variant;
@@ -183,8 +192,8 @@ impl Kernel {
         }
     }
 
-    /// How the buffers of both groups are bound.
-    fn access(self) -> [&'static [Access]; 2] {
+    /// How the buffers of both groups are bound, by rising numbers.
+    pub fn access(self) -> [&'static [Access]; 2] {
         use Access::{Read, Uniform, Write};
         const LEVEL: &[Access] = &[Uniform, Read, Read, Read, Read, Read];
         match self {
@@ -194,7 +203,7 @@ impl Kernel {
             Kernel::Faces(_) => [LEVEL, &[Write, Write]],
             Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
-            Kernel::Colors => [&[Uniform], &[Read, Write]],
+            Kernel::Colors | Kernel::Bounds => [&[Uniform], &[Read, Write]],
             Kernel::ListedCorners => [&[Uniform, Read, Read, Read, Read, Read], &[Write, Write, Write]],
         }
     }
@@ -203,124 +212,4 @@ impl Kernel {
 /// The text of every kernel with a name, for tests that validate them.
 pub(crate) fn sources() -> Vec<(String, String)> {
     Kernel::all().into_iter().map(|k| (format!("{k:?}"), k.source())).collect()
-}
-
-/// A buffer, or a run of bytes of it.
-pub(crate) type Bound<'a> = wgpu::BufferBinding<'a>;
-
-/// The whole of a buffer.
-pub(crate) fn whole(buffer: &wgpu::Buffer) -> Bound<'_> {
-    Bound { buffer, offset: 0, size: None }
-}
-
-/// One dispatch, ready to be recorded again and again.
-pub(crate) struct Step {
-    pipeline: wgpu::ComputePipeline,
-    groups: [wgpu::BindGroup; 2],
-    grid: [u32; 2],
-}
-
-impl Step {
-    /// Records the dispatch.
-    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        for (at, group) in (0..).zip(&self.groups) {
-            pass.set_bind_group(at, group, &[]);
-        }
-        pass.dispatch_workgroups(self.grid[0], self.grid[1], 1);
-    }
-}
-
-/// The pipelines that were made so far.
-#[derive(Default)]
-pub(crate) struct Kernels {
-    made: Vec<(Kernel, wgpu::ComputePipeline, [wgpu::BindGroupLayout; 2])>,
-}
-
-impl Kernels {
-    /// A dispatch of `kernel` on elements `numbers.first .. numbers.end`; `read` and `work` are bound in order, `numbers` before
-    /// them. None if there is nothing to do.
-    pub fn step(
-        &mut self,
-        gpu: &Gpu,
-        kernel: Kernel,
-        numbers: &Level,
-        read: &[Bound<'_>],
-        work: &[Bound<'_>],
-    ) -> Option<Step> {
-        let grid = grid(numbers.end.saturating_sub(numbers.first), gpu)?;
-        if !self.made.iter().any(|(k, ..)| *k == kernel) {
-            let made = make(gpu, kernel);
-            self.made.push(made);
-        }
-        let (_, pipeline, layouts) = self.made.iter().find(|(k, ..)| *k == kernel)?;
-        let uniform = crate::surface::buffer(
-            gpu,
-            "numbers",
-            size_of::<Level>() as u64,
-            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        );
-        gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(numbers));
-        let group = |layout: &wgpu::BindGroupLayout, bound: &mut dyn Iterator<Item = Bound<'_>>| {
-            let entries: Vec<_> = (0..)
-                .zip(bound)
-                .map(|(binding, b)| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(b) })
-                .collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
-        };
-        let groups = [
-            group(&layouts[0], &mut std::iter::once(whole(&uniform)).chain(read.iter().cloned())),
-            group(&layouts[1], &mut work.iter().cloned()),
-        ];
-        Some(Step { pipeline: pipeline.clone(), groups, grid })
-    }
-}
-
-/// The workgroups for so many elements: in rows, where one dimension does not take them.
-fn grid(elements: u32, gpu: &Gpu) -> Option<[u32; 2]> {
-    let groups = elements.div_ceil(GROUP);
-    let most = gpu.device.limits().max_compute_workgroups_per_dimension.max(1);
-    let rows = groups.div_ceil(most);
-    (rows > 0).then(|| [groups.div_ceil(rows), rows])
-}
-
-fn make(gpu: &Gpu, kernel: Kernel) -> (Kernel, wgpu::ComputePipeline, [wgpu::BindGroupLayout; 2]) {
-    let layouts = kernel.access().map(|access| {
-        let entry = |(binding, access): (u32, &Access)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: match access {
-                    Access::Uniform => wgpu::BufferBindingType::Uniform,
-                    _ => wgpu::BufferBindingType::Storage { read_only: *access == Access::Read },
-                },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let entries: Vec<_> = (0..).zip(access).map(entry).collect();
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(kernel.entry()),
-            entries: &entries,
-        })
-    });
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(kernel.entry()),
-        bind_group_layouts: &layouts.each_ref().map(Some),
-        immediate_size: 0,
-    });
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(kernel.entry()),
-        source: wgpu::ShaderSource::Wgsl(kernel.source().into()),
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(kernel.entry()),
-        layout: Some(&layout),
-        module: &module,
-        entry_point: Some(kernel.entry()),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    (kernel, pipeline, layouts)
 }

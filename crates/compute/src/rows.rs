@@ -9,11 +9,10 @@
 //! are drawn as fans.
 
 use super::finish::Drawn;
-use super::kernels::{Bound, Kernel, Level, Step, whole};
-use super::{Buffers, Compute, Refiner, Values};
-use crate::corners::edge_flags;
-use crate::surface::Faces;
-use crate::{Error, Gpu};
+use super::kernels::{Kernel, Level};
+use super::program::{Builder, Dispatch, Limits, Program, Role};
+use super::{Error, Values, colors};
+use limn_mesh::Faces;
 
 /// The rows of children `first ..`, one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,12 +50,18 @@ pub struct Rows<'a> {
     /// Its steps.
     pub levels: &'a [RowLevel],
     /// The last level's faces.
-    pub faces: Faces<'a>,
-    /// As in [`crate::SurfaceData::parents`].
+    pub faces: &'a Faces,
+    /// As in `limn_render::SurfaceData::parents`.
     pub parents: Option<[u32; 2]>,
-    /// What kind each face is, as in [`crate::SurfaceData::kind_of`]; empty if none is.
+    /// What kind each face is, as in `limn_render::SurfaceData::kind_of`; empty if none is.
     pub kinds: &'a [u8],
+    /// The bits of a triangle's edges.
+    pub flags: EdgeFlags,
 }
+
+/// `limn_render::corners::edge_flags`: which edges of a triangle are drawn, from its corners' numbers in their polygon and in the
+/// level, the polygon's corners, and the parent level's ranges.
+pub type EdgeFlags = fn([u32; 3], [u32; 3], u32, Option<[u32; 2]>) -> u32;
 
 impl RowLevel {
     /// That every row gives a child of this level from what is there.
@@ -92,7 +97,7 @@ impl RowLevel {
 }
 
 /// The faces around every vertex: where each run begins and ends, and the faces.
-fn around(faces: &Faces<'_>, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Error> {
+fn around(faces: &Faces, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Error> {
     let mut turns = vec![0u32; vertices as usize + 2];
     for (corner, &v) in (0..).zip(faces.corners()) {
         match turns.get_mut(v as usize + 2) {
@@ -105,7 +110,7 @@ fn around(faces: &Faces<'_>, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Erro
     }
     let mut spokes = vec![0u32; faces.corners().len()];
     for f in 0..faces.count() {
-        for &v in faces.face(f).1 {
+        for &v in faces.face(f) {
             // Where the next of v goes; in the end every run's start has moved to its end.
             let at = &mut turns[v as usize + 1];
             if let Some(slot) = spokes.get_mut(*at as usize) {
@@ -122,101 +127,86 @@ fn around(faces: &Faces<'_>, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Erro
 fn triangles(rows: &Rows<'_>) -> Vec<[u32; 5]> {
     let mut out = Vec::new();
     for f in 0..rows.faces.count() {
-        let polygon = rows.faces.face(f).1;
+        let polygon = rows.faces.face(f);
         let kind = u32::from(rows.kinds.get(f).copied().unwrap_or(0) & 3) << 6;
         for (i, pair) in polygon.windows(2).enumerate().skip(1) {
             let (&[b, c], Some(&a)) = (pair, polygon.first()) else { continue };
             let local = [0, i as u32, i as u32 + 1];
-            let flags = edge_flags(local, [a, b, c], polygon.len() as u32, rows.parents) | kind;
+            let flags = (rows.flags)(local, [a, b, c], polygon.len() as u32, rows.parents) | kind;
             out.push([a, b, c, f as u32, flags]);
         }
     }
     out
 }
 
-impl Refiner {
-    /// Prepares to refine by rows. Nothing runs yet; the cage has no points yet ([`Refiner::set_points`]).
-    ///
-    /// # Errors
-    /// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
-    /// leave the adapter's limits.
-    pub fn rows(gpu: &Gpu, compute: &mut Compute, rows: &Rows<'_>, values: Values) -> Result<Refiner, Error> {
-        let mut before = rows.cage;
-        for level in rows.levels {
-            level.check(before)?;
-            before = level.vertices;
-        }
-        let mut buffers = Buffers::new(gpu);
-        let kernels = &mut compute.kernels;
-        let cage = buffers.make("cage", 16 * u64::from(rows.cage), wgpu::BufferUsages::COPY_DST)?;
-        let mut each: Vec<Step> = Vec::new();
-        let mut points = cage.clone();
-        for (k, level) in rows.levels.iter().enumerate() {
-            let usage = if k + 1 == rows.levels.len() {
-                wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC
-            } else {
-                wgpu::BufferUsages::empty()
-            };
-            let new = buffers.make("the vertices", 16 * u64::from(level.vertices), usage)?;
-            for pass in &level.passes {
-                let read = [
-                    buffers.filled("rows", &[&pass.offsets])?,
-                    buffers.filled("weights", &[&pass.entries])?,
-                    buffers.filled("moves", &[&pass.moves])?,
-                ];
-                let read: Vec<Bound<'_>> = read.iter().map(whole).collect();
-                let end = pass.offsets.len().saturating_sub(1) as u32;
-                let numbers = Level { first_face: pass.first, end, ..Level::default() };
-                // Constants move points alone.
-                let kernel = Kernel::Rows { moved: !pass.moves.is_empty() && values == Values::Points };
-                each.extend(kernels.step(gpu, kernel, &numbers, &read, &[whole(&points), whole(&new)]));
-            }
-            points = new;
-        }
-        if values == Values::Colors {
-            return Refiner::colors(buffers, kernels, (cage, rows.cage), (Vec::new(), each), (points, before));
-        }
-        let (turns, spokes) = around(&rows.faces, before)?;
-        let faces = rows.faces.count() as u32;
-        let offsets: Vec<u32> = match rows.faces {
-            Faces::Triangles(_) => (0..=faces).map(|f| 3 * f).collect(),
-            Faces::Quads(_) => (0..=faces).map(|f| 4 * f).collect(),
-            Faces::Polygons { offsets, .. } => offsets.to_vec(),
-        };
-        let read = [
-            buffers.filled("faces", &[&offsets])?,
-            buffers.filled("corners", &[rows.faces.corners()])?,
-            buffers.filled("turns", &[&turns])?,
-            buffers.filled("spokes", &[&spokes])?,
-        ];
-        let read: Vec<Bound<'_>> = read.iter().map(whole).collect();
-        let normals = buffers.make("normals", 16 * u64::from(faces), wgpu::BufferUsages::empty())?;
-        let work = [whole(&points), whole(&normals)];
-        for (kernel, end) in [(Kernel::ListedFaces, faces), (Kernel::ListedNormals, before)] {
-            each.extend(kernels.step(gpu, kernel, &Level { end, ..Level::default() }, &read, &work));
-        }
-        let drawn = Drawn::listed(&mut buffers, rows)?;
-        if let Drawn::Corners { .. } = drawn {
-            let table = triangles(rows);
-            for (range, chunk) in drawn.pieces() {
-                let mine = table.get(range.start as usize..range.end as usize).unwrap_or(&[]);
-                let mine = buffers.filled("triangles", &[mine])?;
-                let read: Vec<Bound<'_>> = read.iter().cloned().chain([whole(&mine)]).collect();
-                let numbers = Level { end: range.len() as u32, ..Level::default() };
-                let work = [whole(&points), whole(&normals), whole(chunk)];
-                each.extend(kernels.step(gpu, Kernel::ListedCorners, &numbers, &read, &work));
-            }
-        }
-        Ok(Refiner {
-            cage,
-            cage_vertices: rows.cage,
-            once: Vec::new(),
-            each,
-            vertices: points,
-            count: before,
-            drawn,
-            packed: None,
-            bytes: buffers.bytes,
-        })
+/// The program that refines by rows. Cost: linear in the last level.
+///
+/// # Errors
+/// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
+/// leave the adapter's limits.
+pub fn rows(rows: &Rows<'_>, values: Values, limits: Limits) -> Result<Program, Error> {
+    let mut before = rows.cage;
+    for level in rows.levels {
+        level.check(before)?;
+        before = level.vertices;
     }
+    let mut builder = Builder::new(limits);
+    let cage = builder.make("cage", 16 * u64::from(rows.cage), Role::Cage)?;
+    let mut each: Vec<Dispatch> = Vec::new();
+    let mut points = cage;
+    for (k, level) in rows.levels.iter().enumerate() {
+        let role = if k + 1 == rows.levels.len() { Role::Vertices } else { Role::Work };
+        let new = builder.make("the vertices", 16 * u64::from(level.vertices), role)?;
+        for pass in &level.passes {
+            let read = [
+                builder.filled("rows", &[&pass.offsets])?,
+                builder.filled("weights", &[&pass.entries])?,
+                builder.filled("moves", &[&pass.moves])?,
+            ];
+            let end = pass.offsets.len().saturating_sub(1) as u32;
+            let numbers = Level { first_face: pass.first, end, ..Level::default() };
+            // Constants move points alone.
+            let kernel = Kernel::Rows { moved: !pass.moves.is_empty() && values == Values::Points };
+            each.extend(builder.step(kernel, &numbers, &read, &[points, new]));
+        }
+        points = new;
+    }
+    if values == Values::Colors {
+        return colors(builder, (cage, rows.cage), (Vec::new(), each), (points, before));
+    }
+    let (turns, spokes) = around(rows.faces, before)?;
+    let faces = rows.faces.count() as u32;
+    let offsets: Vec<u32> = match rows.faces {
+        Faces::Triangles(_) => (0..=faces).map(|f| 3 * f).collect(),
+        Faces::Quads(_) => (0..=faces).map(|f| 4 * f).collect(),
+        Faces::Polygons { offsets, .. } => offsets.to_vec(),
+    };
+    let read = [
+        builder.filled("faces", &[&offsets])?,
+        builder.filled("corners", &[rows.faces.corners()])?,
+        builder.filled("turns", &[&turns])?,
+        builder.filled("spokes", &[&spokes])?,
+    ];
+    let normals = builder.make("normals", 16 * u64::from(faces), Role::Work)?;
+    let work = [points, normals];
+    for (kernel, end) in [(Kernel::ListedFaces, faces), (Kernel::ListedNormals, before)] {
+        each.extend(builder.step(kernel, &Level { end, ..Level::default() }, &read, &work));
+    }
+    let drawn = Drawn::listed(&mut builder, rows)?;
+    if let Drawn::Corners { pieces } = &drawn {
+        let table = triangles(rows);
+        for piece in pieces {
+            let mine = table.get(piece.faces.start as usize..piece.faces.end as usize).unwrap_or(&[]);
+            let mine = builder.filled("triangles", &[mine])?;
+            let [a, b, c, d] = read;
+            let numbers = Level { end: piece.faces.len() as u32, ..Level::default() };
+            let work = [points, normals, piece.buffer];
+            each.extend(builder.step(Kernel::ListedCorners, &numbers, &[a, b, c, d, mine], &work));
+        }
+    }
+    let bounds = Some(builder.bounds(points, before, &mut each)?);
+    let (once, cage_vertices) = (Vec::new(), rows.cage);
+    let (shaders, buffers) = (builder.shaders(), builder.buffers);
+    let (vertices, count, packed) = (points, before, None);
+    Ok(Program { buffers, shaders, once, each, cage, cage_vertices, vertices, count, drawn, packed, bounds })
 }

@@ -1,0 +1,84 @@
+//! What a refined level is drawn from: the layouts of `limn_render::surface`, their pieces made by kernels.
+//!
+//! ```text
+//!   quads       vertices 16 bytes | indices in pieces, 24 bytes a quad         shared quads, made once
+//!   triangles   vertices 16 bytes | corners in pieces, 72 bytes a triangle     corners hold points, made each time
+//! ```
+//!
+//! A piece is a buffer of its own, so that no binding grows with the level. Limit: one material; faces are not hidden.
+
+use super::Rows;
+use crate::Error;
+use crate::program::{Builder, Id, Role};
+use limn_mesh::Faces;
+use std::ops::Range;
+
+/// Largest piece: as for what is uploaded.
+const PIECE_BYTES: u64 = 96 << 20;
+
+/// How a level is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drawn {
+    /// Shared quads: where face and edge points begin, and indices.
+    Quads {
+        /// Where face points begin, and edge points.
+        kinds: [u32; 2],
+        /// Six indices a quad.
+        pieces: Vec<Piece>,
+    },
+    /// Corners.
+    Corners {
+        /// Three corners a triangle.
+        pieces: Vec<Piece>,
+    },
+}
+
+/// Faces and what they are drawn from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Faces, of corners triangles.
+    pub faces: Range<u32>,
+    /// The buffer of their indices or corners.
+    pub buffer: Id,
+}
+
+impl Drawn {
+    /// Room for what a kernel makes of `faces` faces.
+    pub(crate) fn fused(builder: &mut Builder, triangles: bool, kinds: [u32; 2], faces: u64) -> Result<Drawn, Error> {
+        let (bytes, role) = if triangles { (72, Role::Corners) } else { (24, Role::Indices) };
+        let most = (PIECE_BYTES.min(builder.limit()) / bytes).max(1);
+        let mut pieces = Vec::new();
+        let mut first = 0;
+        while first < faces {
+            let end = (first + most).min(faces);
+            let what = if triangles { "corners" } else { "indices" };
+            let buffer = builder.make(what, bytes * (end - first), role)?;
+            pieces.push(Piece { faces: first as u32..end as u32, buffer });
+            first = end;
+        }
+        Ok(if triangles { Drawn::Corners { pieces } } else { Drawn::Quads { kinds, pieces } })
+    }
+
+    /// What the listed faces of `rows` are drawn from: shared quads with their indices, or room for the corners of triangles.
+    pub(crate) fn listed(builder: &mut Builder, rows: &Rows<'_>) -> Result<Drawn, Error> {
+        let (Faces::Quads(quads), Some(kinds)) = (rows.faces, rows.parents) else {
+            let (corners, faces) = (rows.faces.corners().len() as u64, rows.faces.count() as u64);
+            return Drawn::fused(builder, true, [0; 2], corners.saturating_sub(2 * faces));
+        };
+        let drawn = Drawn::fused(builder, false, kinds, quads.len() as u64 / 4)?;
+        for Piece { faces, buffer } in drawn.pieces() {
+            let mine = quads.chunks_exact(4).skip(faces.start as usize).take(faces.len());
+            let indices = mine.flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).flat_map(u32::to_ne_bytes);
+            if let Some(buffer) = builder.buffers.get_mut(*buffer as usize) {
+                buffer.contents = indices.collect();
+            }
+        }
+        Ok(drawn)
+    }
+
+    /// The faces of each piece, and its buffer.
+    pub fn pieces(&self) -> &[Piece] {
+        let (Drawn::Quads { pieces, .. } | Drawn::Corners { pieces }) = self;
+        pieces
+    }
+}
