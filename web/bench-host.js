@@ -13,11 +13,12 @@
 // Its edge points are found again by hundredths of their coordinates, rounded at two widths: a few are not, and stay midpoints.
 export const ENGINES = [
   { id: "limn-wasm", name: "Limn, WebAssembly", on: "wasm" },
+  ...(navigator.gpu ? [/** @type {const} */ ({ id: "limn-webgpu", name: "Limn, WebGPU", on: "webgpu" })] : []),
   ...(location.hash === "#peers" ? [/** @type {const} */ ({ id: "three-subdivide", name: "three-subdivide", on: "js", excuse: "leaves some edge points of fine meshes where they were" })] : []),
 ];
 
 /** What a reader of the figures has to know of the engines that are not there. */
-export const NOTES = ENGINES.some(({ on }) => on === "webgpu") ? [] : ["Limn has no refinement on WebGPU yet: no rows for it."];
+export const NOTES = ENGINES.some(({ on }) => on === "webgpu") ? [] : ["This browser has no WebGPU: no rows for it."];
 
 /** One engine in a thread of its own. */
 export class Thread {

@@ -4,7 +4,9 @@
 //
 //   open engine -> prepare input, scheme, level -> run n times -> seconds;  peak, size, surface
 //
-// A further engine (a compute path on WebGPU) is one entry of ENGINES; its `run` may be asynchronous.
+// A further engine is one entry of ENGINES; its `run` may be asynchronous.
+
+import { Runner } from "./compute.js";
 
 /** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array, ends: Uint32Array, sharpness: Float32Array }} Cage */
 /** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array }} Surface */
@@ -17,7 +19,8 @@
 /**
  * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
  * @typedef {{ run(scheme: string, level: number, first?: number): void, clear(): void, faces(): number, positions(): Float32Array,
- *   face_counts(): Uint32Array, face_corners(): Uint32Array, differs(p: Float32Array, n: Uint32Array, c: Uint32Array, tolerance: number): string }} Trial
+ *   draw(scheme: string, level: number, buffer: number, groups: number): import("./compute.js").Drawing | undefined,
+ *   predicted(scheme: string, level: number): number, face_counts(): Uint32Array, face_corners(): Uint32Array, differs(p: Float32Array, n: Uint32Array, c: Uint32Array, tolerance: number): string }} Trial
  * @typedef {{ Trial: { cage(name: string, n: number): Trial, of(p: Float32Array, n: Uint32Array, c: Uint32Array, ends: Uint32Array, sharpness: Float32Array): Trial },
  *   Stores: new (bytes: number) => { store(n: number): number } }} Kernel
  */
@@ -104,6 +107,82 @@ class Wasm {
     });
     const sorted = times.slice(1).sort((a, b) => a - b);
     return (STORED / (sorted[5] ?? 1)) * 1e3;
+  }
+}
+
+/**
+ * Limn on the GPU: half-edges are built and sent, everything else is computed there, to buffers that a picture could be drawn from. Points
+ * and normals; waits for the device. A scheme that it has no kernels for refines on the CPU, so there is nothing to measure.
+ */
+class Compute {
+  #trial = /** @type {Trial | null} */ (null);
+  #refiner = /** @type {import("./compute.js").Refiner | null} */ (null);
+  #bytes = 0;
+  #wanted = /** @type {[string, number]} */ (["", 0]);
+
+  /** @param {Kernel} kernel @param {GPUDevice} device */
+  constructor(kernel, device) {
+    this.kernel = kernel;
+    this.device = device;
+    this.runner = new Runner(device);
+  }
+
+  static async open() {
+    const adapter = await navigator.gpu?.requestAdapter();
+    if (!adapter) throw new Error("this browser has no WebGPU adapter");
+    const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
+    const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
+    return new Compute((await load()).kernel, device);
+  }
+
+  get trial() {
+    if (!this.#trial) throw new Error("there is no cage");
+    return this.#trial;
+  }
+
+  /** @param {Cage} cage @param {string} scheme @param {number} level */
+  async prepare({ positions, counts, corners, ends, sharpness }, scheme, level) {
+    this.#trial = this.kernel.Trial.of(positions, counts, corners, ends, sharpness);
+    this.#wanted = [scheme, level];
+    await this.run();
+  }
+
+  async run() {
+    this.#refiner?.free();
+    this.#refiner = null;
+    const drawing = this.trial.draw(...this.#wanted, ...this.runner.limits);
+    if (!drawing) throw new Error("it has no kernels for this");
+    // A driver tells of too little memory, and of what it does not like, through scopes alone.
+    for (const scope of /** @type {const} */ (["validation", "out-of-memory"])) this.device.pushErrorScope(scope);
+    this.#refiner = await this.runner.prepare(drawing, []);
+    this.#bytes = drawing.plan().buffers.reduce((sum, { bytes }) => sum + bytes, 0);
+    drawing.free();
+    this.#refiner.run();
+    const errors = await Promise.all([this.device.popErrorScope(), this.device.popErrorScope(), this.device.queue.onSubmittedWorkDone()]);
+    const error = errors[0] ?? errors[1];
+    if (error) throw new Error(error.message || "the graphics adapter has too little memory");
+  }
+
+  /** Points from the GPU; faces are numbered as the CPU does. */
+  async surface() {
+    const refiner = this.#refiner;
+    if (!refiner) throw new Error("nothing was refined");
+    const vertices = new Float32Array(await refiner.read(refiner.vertices, refiner.count * 16));
+    const positions = new Float32Array(refiner.count * 3);
+    for (let v = 0; v < refiner.count; v += 1) positions.set(vertices.subarray(4 * v, 4 * v + 3), 3 * v);
+    this.trial.run(...this.#wanted);
+    const faces = { counts: this.trial.face_counts(), corners: this.trial.face_corners() };
+    this.trial.clear();
+    return { positions, ...faces };
+  }
+
+  faces() {
+    return this.trial.predicted(...this.#wanted);
+  }
+
+  /** Bytes on the GPU. */
+  peak() {
+    return this.#bytes;
   }
 }
 
@@ -202,7 +281,7 @@ function shortest(positions, corners) {
 }
 
 /** @type {Record<string, () => Promise<Engine>>} */
-const ENGINES = { "limn-wasm": Wasm.open, "three-subdivide": Three.open };
+const ENGINES = { "limn-wasm": Wasm.open, "limn-webgpu": Compute.open, "three-subdivide": Three.open };
 
 /** @type {Engine | null} */
 let engine = null;

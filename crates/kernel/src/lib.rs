@@ -7,6 +7,7 @@
 //!   engine ── mesh as bytes, once a mesh ──>  Kernel
 //!          ── plan as bytes ───────────────>  Kernel::start ──> Run: step, step, ...
 //!          <── level as bytes ──────────────  Run::finish
+//!          ── plan as bytes ───────────────>  Kernel::draw ──> Drawing: what the GPU does, where it can
 //! ```
 //!
 //! A run is stepped by the engine as it steps its own jobs: in slices of a few milliseconds, between which it takes messages
@@ -14,13 +15,16 @@
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
 mod about;
+mod drawing;
 #[cfg(feature = "trial")]
 pub mod trial;
 
 use std::sync::Arc;
 
 pub use about::about;
+pub use drawing::Drawing;
 
+use limn_compute::Limits;
 use limn_mesh::{Job, Mesh, Plan};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -59,6 +63,23 @@ impl Kernel {
         let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
         Job::new(mesh, plan, budget as u64).map(|job| Run(job.shaded())).map_err(|e| e.to_string())
     }
+
+    /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension. None
+    /// where the CPU has to refine: `limn_compute::program`.
+    ///
+    /// # Errors
+    /// One sentence: the bytes are no plan, or there is no mesh, or a buffer would be too large.
+    pub fn draw(&self, plan: &[u8], buffer: f64, groups: u32) -> Result<Option<Drawing>, String> {
+        let mesh = self.mesh.as_ref().ok_or("there is no mesh to refine")?;
+        let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
+        let program = limn_compute::program(mesh, &plan, limits(buffer, groups)).map_err(|e| e.to_string())?;
+        Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
+    }
+}
+
+/// The limits that a browser's adapter has. A size of 4 GB and more cannot be said to shaders, nor be had.
+pub(crate) fn limits(buffer: f64, groups: u32) -> Limits {
+    Limits { buffer: (buffer as u64).min(u64::from(u32::MAX)), groups }
 }
 
 /// A refinement under way. Dropping it cancels.

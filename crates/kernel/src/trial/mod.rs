@@ -11,6 +11,7 @@
 pub mod cages;
 pub mod same;
 
+use crate::{Drawing, limits};
 use limn_mesh::{Boundary, Faces, Mesh, Plan, Refined, Soup, Weld, refine, scheme};
 use same::{Sorted, Surface};
 use std::sync::Arc;
@@ -71,6 +72,26 @@ impl Trial {
         let (mesh, _) = Mesh::build(&self.soup, Weld::Off).map_err(|e| e.to_string())?;
         self.made = Some(refine(&Arc::new(mesh), &plan, u64::MAX).map_err(|e| e.to_string())?);
         Ok(())
+    }
+
+    /// What a GPU does for the same, from indexed faces; none where the CPU has to.
+    ///
+    /// # Errors
+    /// As [`Trial::run`], and a sentence for a buffer that the adapter does not take.
+    pub fn draw(&self, id: &str, level: u32, buffer: f64, groups: u32) -> Result<Option<Drawing>, String> {
+        let entry = scheme(id).ok_or_else(|| format!("there is no scheme `{id}`"))?;
+        let plan = Plan::new(entry, Boundary::default(), level);
+        let (mesh, _) = Mesh::build(&self.soup, Weld::Off).map_err(|e| e.to_string())?;
+        let program = limn_compute::program(&mesh, &plan, limits(buffer, groups)).map_err(|e| e.to_string())?;
+        Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
+    }
+
+    /// How many faces a level will have; 0 if it cannot be made.
+    pub fn predicted(&self, id: &str, level: u32) -> u32 {
+        let plan = scheme(id).map(|entry| Plan::new(entry, Boundary::default(), level));
+        let mesh = Mesh::build(&self.soup, Weld::Off).ok();
+        let predicted = mesh.zip(plan).and_then(|((mesh, _), plan)| limn_mesh::predict(&mesh, &plan).ok().flatten());
+        predicted.map_or(0, |p| p.counts.faces as u32)
     }
 
     /// Lets go of what was made.
