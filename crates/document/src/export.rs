@@ -5,11 +5,10 @@
 //! the face that it came from. Vertices that building the mesh had split are written once. Cost: linear in the level.
 
 use limn_formats::parcel::pack_export;
-use limn_formats::{Export, ExportFaces, OutFile, WriteError, write_glb, write_obj};
+use limn_formats::{Export, ExportFaces, Origin, OutFile, WriteError, write_glb, write_obj};
 use limn_mesh::{Faces, Refined};
 
 use crate::document::Document;
-use crate::merge::{copies, file_order};
 
 /// Why nothing was written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -91,16 +90,10 @@ impl Document {
         }
         let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-        let (same, first) = (copies(refined), file_order(mesh));
-        let merged = (same.is_some() || !first.is_empty()).then(|| Merged::new(refined, same, first));
-        let (points, colors, corners) = match &merged {
-            Some(m) => (&m.points[..], &m.colors[..], &m.corners[..]),
-            None => (&refined.points[..], &refined.colors[..], refined.faces.corners()),
-        };
         let faces = match &refined.faces {
-            Faces::Polygons { offsets, .. } => ExportFaces::Polygons { offsets, corners },
-            Faces::Triangles(_) => ExportFaces::Triangles(corners),
-            Faces::Quads(_) => ExportFaces::Quads(corners),
+            Faces::Polygons { offsets, corners } => ExportFaces::Polygons { offsets, corners },
+            Faces::Triangles(corners) => ExportFaces::Triangles(corners),
+            Faces::Quads(corners) => ExportFaces::Quads(corners),
         };
         // What a face of the level inherits from its face of the model.
         let inherit = |of: &[u32]| -> Vec<u32> {
@@ -111,18 +104,20 @@ impl Document {
             (0..faces.count()).map(|f| source(f).unwrap_or(limn_mesh::NONE)).collect()
         };
         let (face_groups, face_materials) = (inherit(&soup.face_groups), inherit(&soup.face_materials));
-        // Copies keep normals of their own while they are drawn; in a file the first one's has to do.
-        let normals = (format == ExportFormat::Glb).then(|| match &merged {
-            Some(m) => m.keep(&refined.normals()),
-            None => refined.normals(),
-        });
+        let normals = (format == ExportFormat::Glb).then(|| refined.normals());
         let export = Export {
             name: stem,
-            points,
+            points: &refined.points,
+            origin: Some(Origin {
+                level: refined.level,
+                sources: &mesh.vertex_source,
+                positions: mesh.weld_class.len() as u32,
+                in_order: mesh.face_source.is_sorted(),
+            }),
             faces,
             normals: normals.as_deref(),
             uv: refined.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..])),
-            colors,
+            colors: &refined.colors,
             face_groups: &face_groups,
             group_names: &model.groups,
             face_materials: &face_materials,
@@ -130,40 +125,5 @@ impl Document {
             images: &model.images,
         };
         Ok(take(&export, format))
-    }
-}
-
-/// A level whose copies of split vertices are one again, and whose first vertices are those of the file.
-struct Merged {
-    points: Vec<[f32; 3]>,
-    colors: Vec<[f32; 4]>,
-    corners: Vec<u32>,
-    /// The vertices that are kept, in the order of the file.
-    kept: Vec<u32>,
-}
-
-impl Merged {
-    fn new(refined: &Refined, same: Option<Vec<u32>>, first: Vec<u32>) -> Merged {
-        let all = refined.points.len() as u32;
-        let same = same.unwrap_or_else(|| (0..all).collect());
-        let is_kept = |&v: &u32| same.get(v as usize) == Some(&v);
-        let rest = first.len() as u32..all;
-        let kept: Vec<u32> = first.into_iter().chain(rest).filter(is_kept).collect();
-        let mut number = vec![0; same.len()];
-        for (&v, i) in kept.iter().zip(0..) {
-            if let Some(slot) = number.get_mut(v as usize) {
-                *slot = i;
-            }
-        }
-        let of = |c: &u32| same.get(*c as usize).and_then(|&v| number.get(v as usize)).copied().unwrap_or_default();
-        let corners = refined.faces.corners().iter().map(of).collect();
-        let mut merged = Merged { points: Vec::new(), colors: Vec::new(), corners, kept };
-        merged.points = merged.keep(&refined.points);
-        merged.colors = merged.keep(&refined.colors);
-        merged
-    }
-
-    fn keep<T: Copy>(&self, values: &[T]) -> Vec<T> {
-        self.kept.iter().filter_map(|&v| values.get(v as usize).copied()).collect()
     }
 }

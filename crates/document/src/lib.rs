@@ -29,7 +29,6 @@ pub mod export;
 pub mod history;
 pub mod info;
 pub mod link;
-mod merge;
 pub mod numbers;
 mod outcome;
 pub mod parameters;

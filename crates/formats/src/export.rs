@@ -63,6 +63,19 @@ impl<'a> ExportFaces<'a> {
     }
 }
 
+/// Where the vertices of a level came from. Vertices of level 0 are the level's first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin<'a> {
+    /// The level.
+    pub level: u32,
+    /// The position of the file behind each vertex of level 0.
+    pub sources: &'a [u32],
+    /// How many positions the file has.
+    pub positions: u32,
+    /// Whether level 0 lies in the file's order.
+    pub in_order: bool,
+}
+
 /// A surface to write. Empty slices mean that there is none of a thing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Export<'a> {
@@ -70,6 +83,8 @@ pub struct Export<'a> {
     pub name: &'a str,
     /// Vertex positions, written in this order.
     pub points: &'a [[f32; 3]],
+    /// What tells copies of split vertices from vertices that touch, and the file's order; none: points are written as they are.
+    pub origin: Option<Origin<'a>>,
     /// The faces.
     pub faces: ExportFaces<'a>,
     /// Unit normals, one for each point, or none.
@@ -97,6 +112,7 @@ impl<'a> Export<'a> {
         Export {
             name: &model.name,
             points: &soup.positions,
+            origin: None,
             faces: ExportFaces::Polygons { offsets: &soup.offsets, corners: &soup.corners },
             normals: None,
             uv: (!soup.uv_corners.is_empty()).then_some((&soup.uvs, &soup.uv_corners)),

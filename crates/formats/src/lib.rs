@@ -14,6 +14,7 @@ mod error;
 mod export;
 mod files;
 mod gltf;
+mod merge;
 mod model;
 mod mtl;
 mod obj;
@@ -23,7 +24,7 @@ mod write_glb;
 mod write_obj;
 
 pub use error::{Limits, ReadError, Warning, WarningKind};
-pub use export::{Export, ExportFaces, OutFile, WriteError};
+pub use export::{Export, ExportFaces, Origin, OutFile, WriteError};
 pub use files::{Files, find};
 pub use model::{Image, Material, Model};
 pub use write_glb::write_glb;

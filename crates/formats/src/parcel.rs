@@ -14,7 +14,7 @@
 use limn_mesh::pack::{Damaged, Read, Reader, Writer};
 use limn_mesh::{Marks, Soup, Weld};
 
-use crate::{Export, ExportFaces, Image, Material, Model};
+use crate::{Export, ExportFaces, Image, Material, Model, Origin};
 
 /// A sentence about a model, and whether a page may fold it away.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,6 +92,9 @@ impl Parcel {
 pub struct Packed {
     name: String,
     points: Vec<[f32; 3]>,
+    /// Whether there is an origin, level, positions and order; and its sources.
+    origin: [u32; 4],
+    sources: Vec<u32>,
     offsets: Vec<u32>,
     corners: Vec<u32>,
     degree: u32,
@@ -110,6 +113,9 @@ pub fn pack_export(export: &Export<'_>) -> Vec<u8> {
     let mut out = Writer::default();
     out.text(export.name);
     out.array(export.points);
+    let origin = export.origin.as_ref();
+    out.array(&origin.map_or([0; 4], |o| [1, o.level, o.positions, o.in_order.into()]));
+    out.array(origin.map_or(&[][..], |o| o.sources));
     let (degree, offsets) = match export.faces {
         ExportFaces::Polygons { offsets, .. } => (0, offsets),
         ExportFaces::Triangles(_) => (3, &[][..]),
@@ -142,6 +148,8 @@ pub fn unpack_export(bytes: &[u8]) -> Result<Packed, Damaged> {
     Ok(Packed {
         name: from.text()?,
         points: from.array()?,
+        origin: from.exactly()?,
+        sources: from.array()?,
         degree: from.number()?,
         offsets: from.array()?,
         corners: from.array()?,
@@ -162,6 +170,12 @@ impl Packed {
         Export {
             name: &self.name,
             points: &self.points,
+            origin: match self.origin {
+                [0, ..] => None,
+                [_, level, positions, order] => {
+                    Some(Origin { level, sources: &self.sources, positions, in_order: order == 1 })
+                }
+            },
             faces: match self.degree {
                 3 => ExportFaces::Triangles(&self.corners),
                 4 => ExportFaces::Quads(&self.corners),

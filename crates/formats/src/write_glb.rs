@@ -17,6 +17,7 @@ use std::{collections::BTreeMap, fmt::Write};
 use limn_mesh::soup::NONE;
 
 use crate::export::{Export, ExportFaces, WriteError};
+use crate::merge::Merged;
 
 /// At most so many corners of one polygon are tried as the start of its fan, and so many copies of a vertex compared.
 const TRIES: usize = 64;
@@ -31,6 +32,8 @@ const TRIES: usize = 64;
 /// [`WriteError::TooLarge`] past 4 GB.
 pub fn write_glb(export: &Export<'_>) -> Result<Vec<u8>, WriteError> {
     export.check()?;
+    let merged = Merged::of(export);
+    let export = &merged.as_ref().map_or(*export, |merged| merged.export(export));
     let vertices = Vertices::new(export);
     let parts = parts(export, &vertices);
     if parts.is_empty() {

@@ -8,6 +8,7 @@ use std::io::Write;
 
 use limn_mesh::soup::NONE;
 
+use crate::merge::Merged;
 use crate::{
     export::{Export, OutFile, WriteError},
     model::linear_to_srgb,
@@ -22,6 +23,8 @@ use crate::{
 /// [`WriteError::Inconsistent`] if an index is out of range.
 pub fn write_obj(export: &Export<'_>) -> Result<Vec<OutFile>, WriteError> {
     export.check()?;
+    let merged = Merged::of(export);
+    let export = &merged.as_ref().map_or(*export, |merged| merged.export(export));
     let name = if export.name.is_empty() { "model" } else { export.name };
     let mut obj = Text::with_capacity(export.points.len() * 40 + export.faces.corners().len() * 10 + 200);
     let used: Vec<usize> = {

@@ -58,6 +58,7 @@ fn obj_with_everything() {
     let colors = [[0., 0.5, 1., 1.], [1., 1., 1., 0.5], [0.1; 4], [0.2; 4], [0.3; 4], [0.4; 4]];
     let export = Export {
         name: "a",
+        origin: None,
         points: &POINTS,
         faces: ExportFaces::Triangles(&[0, 1, 2, 2, 3, 4, 3, 4, 5]),
         normals: Some(&normals),
