@@ -152,15 +152,14 @@ class Compute {
     this.#refiner = null;
     const drawing = this.trial.draw(...this.#wanted, ...this.runner.limits);
     if (!drawing) throw new Error("it has no kernels for this");
-    // A driver tells of too little memory, and of what it does not like, through scopes alone.
-    for (const scope of /** @type {const} */ (["validation", "out-of-memory"])) this.device.pushErrorScope(scope);
+    // What a driver does not like it tells through scopes alone.
+    this.device.pushErrorScope("validation");
     this.#refiner = await this.runner.prepare(drawing, []);
     this.#bytes = drawing.plan().buffers.reduce((sum, { bytes }) => sum + bytes, 0);
     drawing.free();
     this.#refiner.run();
-    const errors = await Promise.all([this.device.popErrorScope(), this.device.popErrorScope(), this.device.queue.onSubmittedWorkDone()]);
-    const error = errors[0] ?? errors[1];
-    if (error) throw new Error(error.message || "the graphics adapter has too little memory");
+    const [error] = await Promise.all([this.device.popErrorScope(), this.device.queue.onSubmittedWorkDone()]);
+    if (error) throw new Error(error.message);
   }
 
   /** Points from the GPU; faces are numbered as the CPU does. */

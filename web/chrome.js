@@ -168,7 +168,7 @@ export class Chrome {
       ? [part(shown.vertices, "vertices"), part(shown.edges, "edges"), part(shown.faces, "faces"), megabytes(shown.bytes)].join("  ·  ")
       : "");
     setText(byId("status-engine"), [
-      model ? `refined in ${duration(times.refine)}` : "",
+      model ? `refined in ${duration(times.refine)} on the ${times.gpu ? "G" : "C"}PU` : "",
       model ? `drawn in ${duration(times.draw)}` : "",
       this.#hello?.renderer === "webgpu" ? "WebGPU" : this.#hello ? "WebGL2" : "",
     ].filter(Boolean).join("  ·  "));

@@ -77,13 +77,17 @@ export class Runner {
   }
 
   /**
-   * Makes what a drawing needs besides the buffers that are drawn. Nothing runs yet.
+   * Makes what a drawing needs besides the buffers that are drawn. Nothing runs yet. Rejects where memory is short.
    * @param {Drawing} drawing @param {GPUBuffer[]} drawn in the order of the plan @returns {Promise<Refiner>}
    */
   async prepare(drawing, drawn) {
     const plan = drawing.plan();
     const compiled = await Promise.all(plan.shaders.map((shader) => this.#compile(shader)));
-    return new Refiner(this.device, drawing, plan, compiled, drawn);
+    this.device.pushErrorScope("out-of-memory");
+    const refiner = new Refiner(this.device, drawing, plan, compiled, drawn);
+    if (!(await this.device.popErrorScope())) return refiner;
+    refiner.free();
+    throw new Error("the graphics adapter has too little memory");
   }
 }
 
@@ -182,4 +186,110 @@ export class Refiner {
     for (const buffer of this.#own) buffer.destroy();
     this.#own = [];
   }
+}
+
+/** What the engine made last to be filled, and the device that it made it on. @type {{ device: GPUDevice | null, buffers: GPUBuffer[] }} */
+const noted = { device: null, buffers: [] };
+let watched = false;
+
+/** Notes buffers labelled `refined` from now on. */
+function watch() {
+  if (watched) return;
+  watched = true;
+  const create = GPUDevice.prototype.createBuffer;
+  GPUDevice.prototype.createBuffer = function (descriptor) {
+    const buffer = create.call(this, descriptor);
+    if (descriptor.label === "refined") {
+      noted.device = this;
+      noted.buffers.push(buffer);
+    }
+    return buffer;
+  };
+}
+
+/** @type {WeakMap<GPUDevice, Runner>} */
+const runners = new WeakMap();
+
+/** A plan of the engine's on its way to the buffers that it draws from: `Drawing` of crates/engine/src/kernel.rs. */
+class Picture {
+  #refiner = /** @type {Refiner | null} */ (null);
+  #box = new Float32Array();
+  #error = /** @type {unknown} */ (null);
+
+  /** @param {Drawing} drawing @param {(failed: boolean) => void} done */
+  constructor(drawing, done) {
+    this.drawing = drawing;
+    this.done = done;
+  }
+
+  shape() {
+    return this.drawing.shape();
+  }
+
+  run() {
+    const [device, drawn] = [noted.device, noted.buffers.splice(0)];
+    this.#run(device, drawn).catch((error) => (this.#error = error)).finally(() => {
+      this.drawing.free();
+      // Editing the cage would want the rest again.
+      this.#refiner?.free();
+      this.done(this.#error !== null);
+    });
+  }
+
+  /** @param {GPUDevice | null} device @param {GPUBuffer[]} drawn */
+  async #run(device, drawn) {
+    if (!device) throw new Error("no buffer was made");
+    const runner = runners.get(device) ?? new Runner(device);
+    runners.set(device, runner);
+    this.#refiner = await runner.prepare(this.drawing, drawn);
+    this.#refiner.run();
+    const { bounds } = this.#refiner;
+    if (!bounds) throw new Error("nothing says where the points lie");
+    this.#box = decode(new Uint32Array(await this.#refiner.read(bounds, 24)));
+  }
+
+  /** The box of the points, lowest coordinates first; empty while the GPU is at work. */
+  bounds() {
+    if (this.#error) throw this.#error;
+    return this.#box;
+  }
+}
+
+/** As `limn_compute::bounds`; where no point is finite the lowest are above the highest. @param {Uint32Array} words */
+function decode(words) {
+  if (!words[3]) return new Float32Array([1, 1, 1, -1, -1, -1]);
+  const ordered = words.map((word, i) => (i < 3 ? ~word : word));
+  return new Float32Array(ordered.map((o) => (o >>> 31 ? o & 0x7fffffff : ~o)).buffer);
+}
+
+/**
+ * Whether the GPU refines: as the page's address says (`compute=on` or `off`), else unless the adapter is a program: level 5 of the
+ * creature takes that some seconds, and the CPU's patches a twentieth of one.
+ */
+async function isWanted() {
+  const wish = new URLSearchParams(location.search).get("compute");
+  const adapter = await navigator.gpu.requestAdapter();
+  // Where browsers told it before.
+  const isProgram = adapter?.info.isFallbackAdapter ?? Reflect.get(adapter ?? {}, "isFallbackAdapter") === true;
+  return wish ? wish === "on" : !isProgram;
+}
+
+/**
+ * The kernel for an engine that draws with WebGPU: it refines there what it can. `wake` is called when something is ready.
+ * @param {Kernel} kernel @param {() => void} wake
+ */
+export async function attach(kernel, wake) {
+  watch();
+  let works = await isWanted();
+  return {
+    mesh: (/** @type {Uint8Array} */ bytes) => kernel.mesh(bytes),
+    start: (/** @type {Uint8Array} */ plan, /** @type {number} */ budget) => kernel.start(plan, budget),
+    draw: (/** @type {Uint8Array} */ plan, /** @type {number} */ buffer, /** @type {number} */ groups) => {
+      const drawing = works ? kernel.draw(plan, buffer, groups) : undefined;
+      return drawing && new Picture(drawing, (failed) => {
+        works &&= !failed;
+        wake();
+      });
+    },
+  };
 }

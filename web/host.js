@@ -27,6 +27,8 @@ export function createHost(post) {
   let engine = null;
   /** @type {ToEngine[]} */
   const waiting = [];
+  /** @type {Renderer | undefined} */
+  let drawsOn;
   let dead = false;
   let working = false;
   let framing = false;
@@ -93,7 +95,8 @@ export function createHost(post) {
     try {
       // Another address each time: a browser may keep what failed, and a module that ran out of memory is of no more use.
       const { Kernel } = await load("kernel", tries ? `?${tries}` : "");
-      made = new Kernel();
+      const kernel = new Kernel();
+      made = drawsOn === "webgpu" ? await (await import("./compute.js")).attach(kernel, () => enter((e) => e.work(0))) : kernel;
     } catch {}
     tries += 1;
     loading = false;
@@ -152,7 +155,7 @@ export function createHost(post) {
     const { canvas } = start;
     // On WebGL2 nobody but the canvas tells that the device is gone.
     canvas.addEventListener("webglcontextlost", () => fault("the graphics device was lost"));
-    const renderer = start.renderer ?? (await probe());
+    const renderer = (drawsOn = start.renderer ?? (await probe()));
     const folder = renderer === "webgpu" ? "webgpu" : "webgl";
     try {
       const module = await load(folder);

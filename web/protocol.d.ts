@@ -205,7 +205,7 @@ export interface State {
   levels: Level[];
   /** What is on the screen. */
   shown: Counts & { level: number; scheme: string };
-  times: { read: number; refine: number; build: number; draw: number };
+  times: { read: number; refine: number; gpu: boolean; build: number; draw: number };
   busy: boolean;
   /** Schemes side by side: none, or the present one and those beside it; `add` takes another one's id, unless it is empty. */
   compare: { panes: Pane[]; add: string };
@@ -264,13 +264,13 @@ export interface WasmModule {
       emit: (message: never) => void,
     ): Promise<Engine>;
   };
-  Kernel: new () => Kernel;
+  Kernel: new () => import("./compute.js").Kernel;
   /** What is to be told of a scheme, as JSON: crates/kernel/src/about.rs. */
   about(id: string, values: Float64Array, valence: number): string;
 }
 
 /** Refines by every scheme; only the engine calls it: crates/kernel/src/lib.rs. */
-export type Kernel = object;
+export type Kernel = import("./compute.js").Kernel | Awaited<ReturnType<typeof import("./compute.js").attach>>;
 
 /** The engine's calls: crates/engine/src/engine/mod.rs says what each does. */
 export interface Engine {

@@ -69,7 +69,7 @@ export class Supervisor {
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     const message = { renderer: this.#renderer, size, theme: this.theme(), calm, text, files: this.#files.map(plain), notice };
     if ("transferControlToOffscreen" in canvas && workersDraw()) {
-      const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module", name: "limn engine" });
+      const worker = new Worker(new URL(`./worker.js${location.search}`, import.meta.url), { type: "module", name: "limn engine" });
       this.engine = worker;
       worker.onmessage = (event) => this.engine === worker && this.#hear(event.data);
       worker.onerror = (event) => {

@@ -2,8 +2,12 @@
 // that has kernels, at every level, on closed, open, creased and mixed cages.
 
 import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
 import { describe, test } from "node:test";
-import { own } from "./harness.mjs";
+import { promisify } from "node:util";
+import { CLI, cards, cmd, content, difference, download, keep, own, picture, ready, scratch, state } from "./harness.mjs";
 
 /** Schemes with kernels of their own, and whether they take triangles alone. */
 const SCHEMES = /** @type {const} */ ([
@@ -86,5 +90,77 @@ describe("refinement on the GPU", () => {
       assert.equal(why, "it has no kernels for this", scheme);
       assert.ok(!["catmull-clark", "loop", "linear"].includes(scheme), scheme);
     }
+  });
+
+  /** @param {string} hash @param {"on" | "off"} compute */
+  const open = (hash, compute = "on") => here.visit({ search: `?renderer=webgpu&compute=${compute}`, hash });
+  /** @param {Awaited<ReturnType<typeof open>>} page */
+  const said = (page) => page.textContent("#status-engine");
+
+  test("draws the picture that the CPU's points give", { timeout: 180_000 }, async () => {
+    for (const hash of [
+      "#1;open+builtin:creature;scheme+catmull-clark;level+3;view+edges=bold",
+      "#1;open+builtin:icosahedron;scheme+loop;level+4;view+edges=on",
+      "#1;open+builtin:dodecahedron;scheme+doo-sabin;level+3;view+edges=bold",
+      "#1;open+builtin:cube;crease+0-1+10;scheme+catmull-clark;level+3",
+    ]) {
+      const [gpu, cpu] = [await open(hash), await open(hash, "off")];
+      assert.match((await said(gpu)) ?? "", /^refined in .* on the GPU /, hash);
+      assert.match((await said(cpu)) ?? "", /^refined in .* on the CPU /, hash);
+      const [a, b] = [await state(gpu), await state(cpu)];
+      for (const what of ["vertices", "edges", "faces"]) assert.equal(a.shown[what], b.shown[what], `${what} of ${hash}`);
+      const [ours, theirs] = [await picture(gpu), await picture(cpu)];
+      assert.ok(content(ours).detail > 0.0005, `detail ${content(ours).detail} of ${hash}`);
+      const found = difference(ours, theirs);
+      // Polygons of the dual split are cut as fans there, along their shorter diagonals here.
+      const [inside, share] = hash.includes("doo-sabin") ? [50, 0.002] : [0, 0.001];
+      const good = found.inside <= inside && found.share <= share;
+      if (!good) await Promise.all([keep("compute-on", ours), keep("compute-off", theirs)]);
+      assert.ok(good, `${JSON.stringify(found)} of ${hash}`);
+      await Promise.all([gpu, cpu].map((page) => page.close()));
+    }
+  });
+
+  test("gives the CPU what the GPU has no kernels for, and says so", async () => {
+    const page = await open("#1;open+builtin:cube;scheme+catmull-clark;level+3");
+    assert.match((await said(page)) ?? "", / on the GPU /);
+    for (const [command, where] of /** @type {const} */ ([
+      ["scheme j-spline", "C"],
+      ["scheme doo-sabin", "G"],
+      ["limit on", "C"],
+      ["limit off", "G"],
+      ["view points=on", "C"],
+      ["view points=off", "C"], // what is there stays
+      ["level 4", "G"],
+    ])) {
+      await cmd(page, command);
+      await page.waitForFunction((text) => document.querySelector("#status-engine")?.textContent?.includes(text), ` on the ${where}PU `);
+      await ready(page);
+      assert.deepEqual((await cards(page)).filter(({ kind }) => kind === "error"), [], command);
+    }
+  });
+
+  test("a file has the bits of the command line", async () => {
+    const page = await open("#1;open+builtin:pawn;scheme+loop;level+3");
+    assert.match((await said(page)) ?? "", / on the GPU /);
+    const file = await download(page, "page.obj", () => cmd(page, "export page.obj"));
+    const native = join(await scratch(), "page.obj");
+    await promisify(execFile)(CLI, ["builtin:pawn", "scheme", "loop", "level", "3", "export", native]);
+    const lines = (/** @type {Buffer} */ bytes) => bytes.toString().split("\n").filter((line) => /^[vf] /.test(line));
+    const [ours, theirs] = [lines(file.bytes), lines(await readFile(native))];
+    assert.ok(ours.length > 20_000, `${ours.length} lines`);
+    assert.deepEqual(ours, theirs);
+  });
+
+  test("turns around what is under the pointer, and stops for a later wish", async () => {
+    const page = await open("#1;open+builtin:creature;scheme+catmull-clark;level+4");
+    const before = (await state(page)).link;
+    await page.mouse.dblclick(480, 300);
+    await ready(page, (state, link) => state.link !== link, before);
+    // Each drops the one before; the last one is shown.
+    for (const level of [5, 3, 5, 4]) await cmd(page, `level ${level}`);
+    await cmd(page, "level 3");
+    await ready(page, (state) => state.shown.level === 3);
+    assert.match((await said(page)) ?? "", / on the GPU /);
   });
 });

@@ -36,7 +36,7 @@ describe("the module with every scheme", () => {
     test(`comes with the first scheme that needs it, once, on ${renderer}`, async () => {
       site.sent.length = 0;
       const page = await visit(browser, site.url, { renderer, hash: "#1;open+builtin:icosahedron;scheme+catmull-clark;level+2" });
-      for (const id of ["loop", "linear", "catmull-clark"]) await choose(page, id);
+      for (const id of ["loop", "catmull-clark"]) await choose(page, id);
       assert.deepEqual(loaded(), [], "the common schemes do without");
       await choose(page, "doo-sabin");
       assert.deepEqual(loaded().sort(), ["/pkg/kernel/limn_kernel.js", WASM]);

@@ -7,9 +7,10 @@
 use std::sync::Arc;
 
 use limn_mesh::{Mesh, Plan, Refined};
+use limn_render::Gpu;
 use wasm_bindgen::prelude::*;
 
-use crate::making::Work;
+use crate::making::{Gpus, Work};
 
 #[wasm_bindgen]
 extern "C" {
@@ -19,6 +20,20 @@ extern "C" {
     fn mesh(this: &Kernel, bytes: &[u8]) -> Result<(), JsValue>;
     #[wasm_bindgen(method, catch)]
     fn start(this: &Kernel, plan: &[u8], budget: f64) -> Result<Run, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn draw(this: &Kernel, plan: &[u8], buffer: f64, groups: u32) -> Result<Option<Drawing>, JsValue>;
+
+    /// `Picture` of `web/compute.js`: a plan that the GPU refines.
+    pub type Drawing;
+    /// What [`limn_render::Surface::reserve`] makes buffers of.
+    #[wasm_bindgen(method)]
+    pub fn shape(this: &Drawing) -> Vec<u32>;
+    /// Fills the buffers that were made last.
+    #[wasm_bindgen(method)]
+    pub fn run(this: &Drawing);
+    /// The box of the points; empty while the GPU is at work.
+    #[wasm_bindgen(method, catch)]
+    pub fn bounds(this: &Drawing) -> Result<Vec<f32>, JsValue>;
 
     /// `Run` of `crates/kernel`.
     type Run;
@@ -49,13 +64,26 @@ impl Remote {
     /// # Errors
     /// One sentence.
     pub fn start(&mut self, mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Box<dyn Work>, String> {
+        self.take(mesh)?;
+        let run = self.kernel.start(&plan.pack(), budget as f64).map_err(sentence)?;
+        Ok(Box::new(Away { run: Some(run), mesh: mesh.clone() }))
+    }
+
+    /// What the GPU does for a plan; none if it cannot, or its buffers do not take it: then the CPU has to, or says why not.
+    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, gpu: &Gpu) -> Option<Drawing> {
+        self.take(mesh).ok()?;
+        let limits = gpu.device.limits();
+        let buffer = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        self.kernel.draw(&plan.pack(), buffer as f64, limits.max_compute_workgroups_per_dimension).ok()?
+    }
+
+    fn take(&mut self, mesh: &Arc<Mesh>) -> Result<(), String> {
         if self.mesh.as_ref().is_none_or(|m| !Arc::ptr_eq(m, mesh)) {
             self.mesh = None;
             self.kernel.mesh(&mesh.pack()).map_err(sentence)?;
             self.mesh = Some(mesh.clone());
         }
-        let run = self.kernel.start(&plan.pack(), budget as f64).map_err(sentence)?;
-        Ok(Box::new(Away { run: Some(run), mesh: mesh.clone() }))
+        Ok(())
     }
 }
 
@@ -77,6 +105,12 @@ impl Work for Away {
     fn finish(mut self: Box<Self>) -> Result<Refined, String> {
         let bytes = self.run.take().map_or(Ok(Vec::new()), |run| run.finish()).map_err(sentence)?;
         Refined::unpack(&bytes, self.mesh.clone()).map_err(|e| e.to_string())
+    }
+}
+
+impl Gpus for Drawing {
+    fn bounds(&self) -> Result<Vec<f32>, ()> {
+        Drawing::bounds(self).map_err(drop)
     }
 }
 

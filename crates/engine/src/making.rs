@@ -4,7 +4,8 @@
 //!   Making ── step ──► Refine (points, faces) ── step ──► Build (normals, buffers) ──► Made
 //! ```
 //!
-//! Who refines is a [`Work`]: a job of this module, or a run of the one with every scheme.
+//! Who refines is a [`Work`]: a job of this module, or a run of the one with every scheme. Where the GPU does it, a [`Gpus`] waits for
+//! buffers that are filled there, and the level that is [`Made`] has no points here.
 //!
 //! Nothing of what is shown changes until a step gives [`Made`]; dropping a [`Making`] is all that cancelling takes. Flat
 //! shading of small models takes the corner layout, which has one normal a polygon: that changes buffers only, so
@@ -14,7 +15,7 @@ use std::sync::Arc;
 
 use limn_document::Document;
 use limn_mesh::{Job, Mesh, NONE, Plan, Refined, order, triangulate};
-use limn_render::{Error, Part, Renderer, Surface, SurfaceData, Upload};
+use limn_render::{Bounds, Error, Part, Renderer, Surface, SurfaceData, Upload};
 
 /// Rows of refinement, or elements of an upload, between two looks at the clock: about half a millisecond.
 const ROWS: usize = 16 << 10;
@@ -55,6 +56,11 @@ impl Parts {
         parts
     }
 
+    /// Whether there is one part at most.
+    pub fn is_one(&self) -> bool {
+        self.list.len() < 2
+    }
+
     /// The group of a face of the soup.
     pub fn group(&self, face: u32) -> u32 {
         let part = self.of_face.get(face as usize).copied().unwrap_or(0);
@@ -77,6 +83,11 @@ pub struct Made {
 }
 
 impl Made {
+    /// Whether the level's points are on the GPU alone.
+    pub fn is_away(&self) -> bool {
+        self.refined.points.is_empty()
+    }
+
     /// Whether this is `plan` of `mesh` in that layout.
     pub fn is(&self, mesh: &Arc<Mesh>, plan: &Plan, corners: bool) -> bool {
         Arc::ptr_eq(self.refined.mesh(), mesh) && self.plan == *plan && self.corners == corners
@@ -137,6 +148,15 @@ pub trait Work {
     fn finish(self: Box<Self>) -> Result<Refined, String>;
 }
 
+/// A level that the GPU refines, into a surface's own buffers.
+pub trait Gpus {
+    /// The box of the points, lowest coordinates first; empty while it is at work.
+    ///
+    /// # Errors
+    /// If it failed, and the CPU has to do it.
+    fn bounds(&self) -> Result<Vec<f32>, ()>;
+}
+
 impl Work for Job {
     fn step(&mut self, rows: usize) -> Result<bool, String> {
         Ok(Job::step(self, rows))
@@ -153,6 +173,8 @@ impl Work for Job {
 
 enum Stage {
     Refine(Box<dyn Work>),
+    /// Since when.
+    Wait(Box<dyn Gpus>, Surface, Made, f64),
     Build(Made, Option<Box<Upload>>),
     Over,
 }
@@ -173,6 +195,8 @@ pub struct Making {
 pub enum Step {
     /// There is more to do.
     More,
+    /// The GPU failed: the CPU has to do it.
+    Failed,
     /// The surface is there.
     Done(Made, Surface),
 }
@@ -181,6 +205,27 @@ impl Making {
     /// Begins with refining: `work` makes `plan` of `mesh`.
     pub fn refine(work: Box<dyn Work>, mesh: Arc<Mesh>, plan: Plan, corners: bool, parts: Arc<Parts>) -> Making {
         Making { mesh, plan, corners, parts, stage: Stage::Refine(work), spent: [0.0; 2] }
+    }
+
+    /// Begins to wait for the GPU, which refines into `surface` since `now`.
+    pub fn wait(
+        gpu: Box<dyn Gpus>,
+        surface: Surface,
+        refined: Refined,
+        plan: Plan,
+        parts: Arc<Parts>,
+        now: f64,
+    ) -> Making {
+        let (mesh, normals) = (refined.mesh().clone(), Arc::default());
+        let made =
+            Made { refined: Arc::new(refined), plan: plan.clone(), corners: false, normals, parts: parts.clone() };
+        let stage = Stage::Wait(gpu, surface, made, now);
+        Making { mesh, plan, corners: false, parts, stage, spent: [0.0; 2] }
+    }
+
+    /// Whether there is nothing to do before the GPU is ready.
+    pub fn waits(&self) -> bool {
+        matches!(&self.stage, Stage::Wait(gpu, ..) if gpu.bounds().is_ok_and(|b| b.is_empty()))
     }
 
     /// Begins with the points of `made`, for the other layout.
@@ -214,6 +259,7 @@ impl Making {
     /// The share that is done, 0..=1; two thirds are for refining.
     pub fn progress(&self) -> f32 {
         match &self.stage {
+            Stage::Wait(..) => 0.0,
             Stage::Refine(work) => work.progress() * 0.66,
             Stage::Build(_, None) => 0.66,
             Stage::Build(made, Some(upload)) => 0.7 + 0.3 * made.data(|data| upload.progress(data)),
@@ -229,6 +275,15 @@ impl Making {
         let start = clock();
         let stage = std::mem::replace(&mut self.stage, Stage::Over);
         let (next, kind) = match stage {
+            Stage::Wait(gpu, mut surface, made, since) => match gpu.bounds().as_deref() {
+                Ok(&[a, b, c, d, e, f]) => {
+                    self.spent[0] = start - since;
+                    surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, made.parts.list.first().copied());
+                    return Ok(Step::Done(made, surface));
+                }
+                Ok(_) => (Stage::Wait(gpu, surface, made, since), 1),
+                Err(()) => return Ok(Step::Failed),
+            },
             Stage::Refine(mut work) => {
                 let done = loop {
                     if work.step(ROWS)? {

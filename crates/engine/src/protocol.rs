@@ -202,6 +202,8 @@ pub struct Times {
     pub read: f64,
     /// From the mesh to the level's points and faces.
     pub refine: f64,
+    /// Whether the GPU did that.
+    pub gpu: bool,
     /// Normals and buffers.
     pub build: f64,
     /// Recording one frame.

@@ -103,6 +103,26 @@ pub struct Refined {
 }
 
 impl Refined {
+    /// A level whose points and faces are not here but on the GPU: counts alone.
+    pub fn elsewhere(mesh: Arc<Mesh>, level: u32, counts: Counts) -> Refined {
+        Refined {
+            level,
+            counts,
+            hidden: 0,
+            points: Vec::new(),
+            faces: Faces::Quads(Vec::new()),
+            uv: None,
+            colors: Vec::new(),
+            parent_ranges: None,
+            vertex_parents: 0,
+            known_normals: None,
+            kinds: Vec::new(),
+            source: Vec::new(),
+            split: Split::Quad,
+            mesh,
+        }
+    }
+
     /// The soup's face that face `f` of this level came from. Cost: the level.
     pub fn face_source(&self, f: u32) -> u32 {
         if let Some(&source) = self.source.get(f as usize) {

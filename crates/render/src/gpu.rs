@@ -95,7 +95,7 @@ impl Gpu {
             // The defaults everywhere, but as large textures and buffers as there are.
             _ => wgpu::Limits {
                 max_buffer_size: available.max_buffer_size,
-                #[cfg(feature = "compute")]
+                #[cfg(any(feature = "compute", feature = "webgpu"))]
                 max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
                 ..wgpu::Limits::default().using_resolution(available)
             },

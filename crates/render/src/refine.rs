@@ -152,7 +152,7 @@ impl Refiner {
     /// [`Error::Mismatch`] where there are colours and faces do not share vertices, or the colours are of others.
     pub fn surface(&self, bounds: Bounds, colors: Option<&Refiner>) -> Result<Surface, Error> {
         let mut surface = self.surface.clone();
-        surface.set_bounds(bounds);
+        surface.bounds = bounds;
         if let Some(r) = colors {
             match &mut surface.layout {
                 Layout::Shared { colors, .. } if r.count == self.count && r.packed.is_some() => {

@@ -282,9 +282,10 @@ impl Surface {
         vertices.into_iter().chain(self.chunks.iter().map(|c| &c.buffer)).cloned().collect()
     }
 
-    /// The box of what compute filled in.
-    pub fn set_bounds(&mut self, bounds: Bounds) {
+    /// What holds of the buffers that compute filled: the box of the points, and the one part that all faces belong to.
+    pub fn settle(&mut self, bounds: Bounds, part: Option<Part>) {
         self.bounds = bounds;
+        self.parts = vec![part.unwrap_or(Part { material: u32::MAX, group: 0 })];
     }
 
     /// Box around all points that were uploaded.

@@ -299,8 +299,11 @@ impl Engine {
         self.dirty.picture |= effect.moved;
         // Released, the camera comes to rest.
         self.dirty.camera |= effect.moved || held && !self.gestures.held();
-        let hit = effect.pivot.and_then(|(pane, pointer)| Some((pointer, self.made(pane)?)));
-        if let Some((pointer, made)) = hit {
+        let hit = effect.pivot.and_then(|(pane, pointer)| Some((pointer, self.made(pane)?.clone())));
+        if let Some((pointer, mut made)) = hit {
+            if made.is_away() {
+                made.refined = self.coarser(&made);
+            }
             let mut camera = self.document.view().camera;
             let ray = camera.ray(pointer, self.document.aspect());
             let hidden = self.hidden_groups();
@@ -353,7 +356,7 @@ impl Engine {
 
     /// Whether `work` has something to do.
     pub fn has_work(&self) -> bool {
-        self.making.is_some()
+        self.making.as_ref().is_some_and(|m| !m.waits())
     }
 
     /// Works for about so many milliseconds.
@@ -451,7 +454,12 @@ impl Engine {
             Outcome::Open(source) => self.fetch_source(source),
             Outcome::Export { file } => self.start_export(file),
             Outcome::Info { json } => {
-                let points = self.shown.as_ref().filter(|_| !self.making_first()).map(|m| &m.refined.points[..]);
+                let shown = self.shown.as_ref().filter(|_| !self.making_first());
+                // Of a level whose points are on the GPU the box is known.
+                let of_box = self.renderer.surface().map(|s| [s.bounds().min, s.bounds().max]);
+                let points = shown.and_then(|m| {
+                    if m.is_away() { of_box.as_ref().map(|b| &b[..]) } else { Some(&m.refined.points[..]) }
+                });
                 answer = self
                     .document
                     .info(points)

@@ -6,8 +6,13 @@
 use super::Engine;
 use crate::compare::{OVERLAP, WORDS};
 use crate::gestures::Viewport;
-use crate::making::Made;
+use crate::making::{Made, Work};
 use limn_document::compare::Pane;
+use limn_mesh::{Refined, predict};
+use std::sync::Arc;
+
+/// Faces that are refined and looked through between two frames.
+const QUICK: u64 = 100_000;
 
 impl Engine {
     /// Divides the free part of the canvas among the pictures.
@@ -60,6 +65,18 @@ impl Engine {
                 self.renderer.show_in(i + 1, None);
             }
         }
+    }
+
+    /// A level of the same surface to pick from while its points are on the GPU: as fine as is quick to make.
+    pub(super) fn coarser(&mut self, made: &Made) -> Arc<Refined> {
+        let mesh = made.refined.mesh().clone();
+        let quick = |level: &u32| {
+            let counts = predict(&mesh, &made.plan.to(*level)).ok().flatten().map(|p| p.counts);
+            counts.is_some_and(|c| c.faces < QUICK)
+        };
+        let level = (0..=made.plan.level).take_while(quick).last().unwrap_or(0);
+        let work = self.work_on(&mesh, &made.plan.to(level), u64::MAX);
+        work.and_then(Work::finish).map_or_else(|_| made.refined.clone(), Arc::new)
     }
 
     /// Whether the first pane is not yet what is wanted.

@@ -13,6 +13,7 @@ use wasm_bindgen::JsValue;
 use super::Engine;
 use super::open::Opening;
 use crate::gestures::Viewport;
+use crate::making::Made;
 use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
 use crate::{compare, controls, report};
 use limn_document::words::sentence;
@@ -275,16 +276,17 @@ impl Engine {
 
     /// Writes a file now, or when the level that is being made is there.
     pub(super) fn start_export(&mut self, file: String) {
-        if self.making_first() {
+        let away = self.shown.as_ref().is_some_and(Made::is_away) && !is_picture(&file);
+        if self.making_first() || away {
             self.export = Some(file);
+            self.sync();
         } else {
             self.write(&file);
         }
     }
 
     pub(super) fn write(&mut self, file: &str) {
-        let png = file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case("png"));
-        if png {
+        if is_picture(file) {
             return self.write_picture(file);
         }
         let Some(made) = &self.shown else { return };
@@ -338,4 +340,8 @@ impl Engine {
 /// Takes clip coordinates of the free part of the canvas to those of all of it.
 fn shift(scale: Vec2, offset: Vec2) -> Mat4 {
     Mat4::from_translation(offset.extend(0.0)) * Mat4::from_scale(scale.extend(1.0))
+}
+
+fn is_picture(file: &str) -> bool {
+    file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case("png"))
 }

@@ -6,7 +6,8 @@ use limn_document::compare::Pane;
 use limn_document::parameters;
 use limn_document::view::Shading;
 use limn_mesh::marks::INFINITE;
-use limn_mesh::{Connectivity, Job, Mesh, predict};
+use limn_mesh::{Connectivity, Job, Mesh, Plan, Refined, predict};
+use limn_render::Surface;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::{Engine, Known};
@@ -63,9 +64,13 @@ impl Engine {
             })
             .collect();
         self.arrange(&panes);
+        // What shows or writes points, or faces by what they came from, wants them here.
+        let view = self.document.view();
+        let all_here = view.points || view.kinds;
         for (i, (pane, corners)) in panes.into_iter().enumerate() {
             let Pane { mesh, plan, budget, refused, .. } = pane;
-            let there = self.made(i).is_some_and(|m| m.is(&mesh, &plan, corners));
+            let all_here = all_here || i == 0 && self.export.is_some();
+            let there = self.made(i).is_some_and(|m| m.is(&mesh, &plan, corners) && !(all_here && m.is_away()));
             if there || i > 0 && (refused.is_some() || self.skipped.iter().any(|s| s.0 == plan)) {
                 continue;
             }
@@ -76,20 +81,20 @@ impl Engine {
             }
             let here = plan.is_here(&mesh);
             let making = match self.made(i) {
-                Some(made) if made.is(&mesh, &plan, !corners) => Ok(Making::again(made, corners)),
+                Some(made) if made.is(&mesh, &plan, !corners) && !made.is_away() => Ok(Making::again(made, corners)),
                 _ if !here && self.kernel.is_none() => {
                     // What is shown stays until the module comes.
                     (self.making, self.pane, self.wants_kernel) = (None, i, true);
                     return;
                 }
                 _ => {
-                    let work: Result<Box<dyn Work>, String> = match &mut self.kernel {
-                        Some(kernel) if !here => kernel.start(&mesh, &plan, budget),
-                        _ => Job::new(mesh.clone(), plan.clone(), budget)
-                            .map(|job| Box::new(job) as Box<dyn Work>)
-                            .map_err(|e| e.to_string()),
-                    };
-                    work.map(|work| Making::refine(work, mesh, plan.clone(), corners, parts.clone()))
+                    let on_gpu = !(here || corners || all_here) && parts.is_one();
+                    match on_gpu.then(|| self.on_gpu(&mesh, &plan, &parts)).flatten() {
+                        Some(making) => Ok(making),
+                        None => self
+                            .work_on(&mesh, &plan, budget)
+                            .map(|work| Making::refine(work, mesh, plan.clone(), corners, parts.clone())),
+                    }
                 }
             };
             match making {
@@ -110,6 +115,31 @@ impl Engine {
         self.making = None;
         self.progress_over();
         self.overlays();
+    }
+
+    /// What refines on the CPU: this module where it can, else the one with every scheme.
+    pub(super) fn work_on(&mut self, mesh: &Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Box<dyn Work>, String> {
+        match &mut self.kernel {
+            Some(kernel) if !plan.is_here(mesh) => kernel.start(mesh, plan, budget),
+            _ => match Job::new(mesh.clone(), plan.clone(), budget) {
+                Ok(job) => Ok(Box::new(job)),
+                Err(error) => Err(error.to_string()),
+            },
+        }
+    }
+
+    /// Lets the GPU refine, if it can.
+    fn on_gpu(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &Arc<Parts>) -> Option<Making> {
+        if !cfg!(feature = "webgpu") {
+            return None;
+        }
+        let counts = predict(mesh, plan).ok()??.counts;
+        let gpu = self.renderer.gpu();
+        let drawing = self.kernel.as_mut()?.draw(mesh, plan, gpu)?;
+        let surface = Surface::reserve(gpu, &drawing.shape());
+        drawing.run();
+        let level = Refined::elsewhere(mesh.clone(), plan.level, counts);
+        Some(Making::wait(Box::new(drawing), surface, level, plan.clone(), parts.clone(), self.clock.now()))
     }
 
     /// Says that the module with every scheme could not be loaded, and goes back.
@@ -152,6 +182,7 @@ impl Engine {
                         }
                         return self.sync();
                     }
+                    self.times.gpu = made.is_away();
                     self.times.refine = making.spent[0];
                     self.times.build = making.spent[1];
                     self.shown = Some(made);
@@ -164,6 +195,7 @@ impl Engine {
                     }
                     return;
                 }
+                Ok(Step::Failed) => return self.sync(),
                 Ok(Step::More) if clock.now() < deadline => {}
                 Ok(Step::More) => break,
                 Err(error) => return self.cannot_show(&error),
