@@ -12,9 +12,9 @@
  * @typedef {{ buffers: { role: keyof typeof USAGE, bytes: number, filled: boolean, drawn: boolean }[],
  *   shaders: { entry: string, source: string, access: [number[], number[]] }[], once: Dispatch[], each: Dispatch[],
  *   cage: number, vertices: number, count: number, bounds: number | undefined }} Plan
- * @typedef {{ shape(): Uint32Array, points(): Float32Array<ArrayBuffer>, contents(id: number): Uint8Array<ArrayBuffer>, plan(): Plan, free(): void }} Drawing
+ * @typedef {{ shape(): Uint32Array, runs(): Uint32Array, points(): Float32Array<ArrayBuffer>, contents(id: number): Uint8Array<ArrayBuffer>, plan(): Plan, free(): void }} Drawing
  * @typedef {{ mesh(bytes: Uint8Array): void, start(plan: Uint8Array, budget: number): object,
- *   draw(plan: Uint8Array, buffer: number, groups: number): Drawing | undefined }} Kernel
+ *   draw(plan: Uint8Array, buffer: number, groups: number, parts: Uint32Array): Drawing | undefined }} Kernel
  */
 
 // The numbers of WebGPU's GPUBufferUsage.
@@ -26,6 +26,7 @@ const USAGE = {
   vertices: STORAGE | VERTEX | COPY_SRC,
   indices: STORAGE | INDEX | COPY_DST,
   corners: STORAGE | VERTEX,
+  extras: STORAGE | VERTEX,
   colors: STORAGE | VERTEX | COPY_SRC,
   bounds: STORAGE | COPY_SRC | COPY_DST,
 };
@@ -213,6 +214,7 @@ const runners = new WeakMap();
 /** A plan of the engine's on its way to the buffers that it draws from: `Drawing` of crates/engine/src/kernel.rs. */
 class Picture {
   #refiner = /** @type {Refiner | null} */ (null);
+  #runs;
   #box = new Float32Array();
   #error = /** @type {unknown} */ (null);
 
@@ -220,10 +222,15 @@ class Picture {
   constructor(drawing, done) {
     this.drawing = drawing;
     this.done = done;
+    this.#runs = drawing.runs();
   }
 
   shape() {
     return this.drawing.shape();
+  }
+
+  runs() {
+    return this.#runs;
   }
 
   run() {
@@ -284,8 +291,8 @@ export async function attach(kernel, wake) {
   return {
     mesh: (/** @type {Uint8Array} */ bytes) => kernel.mesh(bytes),
     start: (/** @type {Uint8Array} */ plan, /** @type {number} */ budget) => kernel.start(plan, budget),
-    draw: (/** @type {Uint8Array} */ plan, /** @type {number} */ buffer, /** @type {number} */ groups) => {
-      const drawing = works ? kernel.draw(plan, buffer, groups) : undefined;
+    draw: (/** @type {Uint8Array} */ plan, /** @type {number} */ buffer, /** @type {number} */ groups, /** @type {Uint32Array} */ parts) => {
+      const drawing = works ? kernel.draw(plan, buffer, groups, parts) : undefined;
       return drawing && new Picture(drawing, (failed) => {
         works &&= !failed;
         wake();

@@ -5,7 +5,8 @@
 //!   triangles   vertices 16 bytes | corners in pieces, 72 bytes a triangle     corners hold points, made each time
 //! ```
 //!
-//! A piece is a buffer of its own, so that no binding grows with the level. Limit: one material; faces are not hidden.
+//! Quads have corners as well where those carry texture coordinates or colours, which lie in a buffer beside (12 bytes a corner). A piece is a
+//! buffer of its own, so that no binding grows with the level. Limit: faces are not hidden.
 
 use super::Rows;
 use crate::Error;
@@ -30,6 +31,8 @@ pub enum Drawn {
     Corners {
         /// Three corners a triangle.
         pieces: Vec<Piece>,
+        /// Whether corners carry texture coordinates, and colours.
+        carries: [bool; 2],
     },
 }
 
@@ -40,33 +43,46 @@ pub struct Piece {
     pub faces: Range<u32>,
     /// The buffer of their indices or corners.
     pub buffer: Id,
+    /// What corners carry: texture coordinates and a colour, 12 bytes each.
+    pub extra: Option<Id>,
 }
 
 impl Drawn {
     /// Room for what a kernel makes of `faces` faces.
-    pub(crate) fn fused(builder: &mut Builder, triangles: bool, kinds: [u32; 2], faces: u64) -> Result<Drawn, Error> {
+    pub(crate) fn fused(
+        builder: &mut Builder,
+        triangles: bool,
+        kinds: [u32; 2],
+        faces: u64,
+        carries: [bool; 2],
+    ) -> Result<Drawn, Error> {
         let (bytes, role) = if triangles { (72, Role::Corners) } else { (24, Role::Indices) };
-        let most = (PIECE_BYTES.min(builder.limit()) / bytes).max(1);
+        // Even, so that no quad is parted.
+        let most = (PIECE_BYTES.min(builder.limit()) / bytes / 2).max(1) * 2;
         let mut pieces = Vec::new();
         let mut first = 0;
         while first < faces {
             let end = (first + most).min(faces);
             let what = if triangles { "corners" } else { "indices" };
             let buffer = builder.make(what, bytes * (end - first), role)?;
-            pieces.push(Piece { faces: first as u32..end as u32, buffer });
+            let extra = match carries.contains(&true) {
+                true => Some(builder.make("texture coordinates", 36 * (end - first), Role::Extras)?),
+                false => None,
+            };
+            pieces.push(Piece { faces: first as u32..end as u32, buffer, extra });
             first = end;
         }
-        Ok(if triangles { Drawn::Corners { pieces } } else { Drawn::Quads { kinds, pieces } })
+        Ok(if triangles { Drawn::Corners { pieces, carries } } else { Drawn::Quads { kinds, pieces } })
     }
 
     /// What the listed faces of `rows` are drawn from: shared quads with their indices, or room for the corners of triangles.
     pub(crate) fn listed(builder: &mut Builder, rows: &Rows<'_>) -> Result<Drawn, Error> {
         let (Faces::Quads(quads), Some(kinds)) = (rows.faces, rows.parents) else {
             let (corners, faces) = (rows.faces.corners().len() as u64, rows.faces.count() as u64);
-            return Drawn::fused(builder, true, [0; 2], corners.saturating_sub(2 * faces));
+            return Drawn::fused(builder, true, [0; 2], corners.saturating_sub(2 * faces), [false; 2]);
         };
-        let drawn = Drawn::fused(builder, false, kinds, quads.len() as u64 / 4)?;
-        for Piece { faces, buffer } in drawn.pieces() {
+        let drawn = Drawn::fused(builder, false, kinds, quads.len() as u64 / 4, [false; 2])?;
+        for Piece { faces, buffer, .. } in drawn.pieces() {
             let mine = quads.chunks_exact(4).skip(faces.start as usize).take(faces.len());
             let indices = mine.flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).flat_map(u32::to_ne_bytes);
             if let Some(buffer) = builder.buffers.get_mut(*buffer as usize) {
@@ -78,7 +94,7 @@ impl Drawn {
 
     /// The faces of each piece, and its buffer.
     pub fn pieces(&self) -> &[Piece] {
-        let (Drawn::Quads { pieces, .. } | Drawn::Corners { pieces }) = self;
+        let (Drawn::Quads { pieces, .. } | Drawn::Corners { pieces, .. }) = self;
         pieces
     }
 }

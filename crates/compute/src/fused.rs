@@ -120,126 +120,205 @@ pub fn fused_bytes(cage: &Cage<'_>, rules: &Rules, level: u32) -> u64 {
 /// [`Error::Mismatch`], [`Error::HalfEdges`] for tables that do not belong together; [`Error::TooLarge`] where a buffer would leave
 /// the adapter's limits.
 pub fn fused(cage: &Cage<'_>, rules: &Rules, to: u32, values: Values, limits: Limits) -> Result<Program, Error> {
-    let scheme = rules.scheme;
-    let split = scheme.split();
-    cage.check(split)?;
-    if to == 0 {
-        return Err(Error::Mismatch { what: "levels", found: 0, expected: 1 });
-    }
-    let mut sizes = vec![cage.size()];
-    for k in 0..to as usize {
-        let next = sizes.get(k).map_or(Size::default(), |s| s.split(split));
-        sizes.push(next);
-    }
-    let sizes_before = sizes.iter().rev().skip(1);
     let mut builder = Builder::new(limits);
-    let last = sizes.last().copied().unwrap_or_default();
-    // Ids are 31 bits, whatever memory there is.
-    let ids = sizes_before.clone().map(|s| s.half_edges).max().unwrap_or(0);
-    if ids >= 1 << 31 {
-        return Err(Error::TooLarge { what: "the half-edges", bytes: ids.saturating_mul(8), limit: 8 << 31 });
-    }
-    builder.admit("the vertices", last.vertices.saturating_mul(16))?;
-    for size in sizes_before {
-        builder.admit("the half-edges", size.half_edges.saturating_mul(8))?;
-    }
-
-    let creased = cage.is_creased() && scheme.softens();
-    let all_marks = cage.marks();
-    let marked = all_marks.len() as u32;
-    let marks = builder.filled("marks", &[&all_marks])?;
-    let turn = |n: u32| std::f64::consts::TAU / f64::from(n.max(1));
-    let all_angles: Vec<[f32; 2]> =
-        (0..2 * cage.valence().max(8) + 1).map(|n| [turn(n).cos() as f32, turn(n).sin() as f32]).collect();
-    let angles = builder.filled("angles", &[&all_angles])?;
-    // Bound where a level has no such thing to read, and none to write.
-    let nothing = builder.make("nothing", 16, Role::Work)?;
-    let nowhere = builder.make("nowhere", 16, Role::Work)?;
-
-    let faces: Vec<u32> = (0..).zip(cage.offsets.windows(2)).flat_map(|(f, w)| (w[0]..w[1]).map(move |_| f)).collect();
-    let turns = if split == Split::Dual { cage.turns() } else { Vec::new() };
-    let mut held = HalfEdges {
-        half_edges: builder.filled("half-edges", &[cage.twin, cage.origin])?,
-        starts: builder.filled("starts", &[cage.start, &faces, cage.edge, cage.offsets, &turns])?,
-        sharpness: match (creased, cage.sharpness.is_empty()) {
-            (false, _) => None,
-            (true, false) => Some(builder.filled("sharpness", &[cage.sharpness])?),
-            (true, true) => Some(builder.filled("sharpness", &[&vec![0.0f32; cage.twin.len()]])?),
-        },
-    };
-    drop(faces);
-    let cage_points = builder.make("cage", 16 * sizes[0].vertices, Role::Cage)?;
     let (mut once, mut each): (Vec<Dispatch>, Vec<Dispatch>) = Default::default();
-    let mut points = cage_points;
-    for k in 0..to {
-        let at = k as usize;
-        let (size, next) = (sizes[at], sizes[at + 1]);
-        let before = if k == 0 { Size::default() } else { sizes[at - 1] };
-        let numbers = level(rules, marked, k, size, before);
-        let variant = |scheme, creased| Variant { split, base: k == 0 && split != Split::Sqrt3, creased, scheme };
-        let read = [held.half_edges, held.starts, marks, held.sharpness.unwrap_or(nothing), angles];
-        let role = if k + 1 == to { Role::Vertices } else { Role::Work };
-        let new = builder.make("the vertices", 16 * next.vertices, role)?;
-        // The dual split's children are of half-edges.
-        let elements = if split == Split::Dual { numbers.half_edges } else { numbers.faces + numbers.vertices };
-        let all = Level { end: elements, ..numbers };
-        let kernel = Kernel::Points(variant(scheme.number(), creased));
-        each.extend(builder.step(kernel, &all, &read, &[points, new]));
-        points = new;
-        if k + 1 == to && values == Values::Colors {
-            let cage = (cage_points, sizes[0].vertices as u32);
-            return colors(builder, cage, (once, each), (points, next.vertices as u32));
+    let vertices = cage.start.len() as u32;
+    let id = builder.make("cage", 16 * u64::from(vertices), Role::Cage)?;
+    let chain = Chain::new(&mut builder, (cage, id), rules, to, Role::Vertices, (&mut once, &mut each))?;
+    match values {
+        Values::Colors => colors(builder, (id, vertices), (once, each), (chain.values, chain.count)),
+        Values::Points => drawn(builder, (id, vertices), &chain, [None, None], (once, each)),
+    }
+}
+
+/// Values that corners carry: on half-edges of their own, or the points'.
+pub(crate) struct Beside<'a> {
+    pub cage: Cage<'a>,
+    pub rules: Rules,
+    /// One a vertex of the cage.
+    pub values: Vec<[f32; 4]>,
+}
+
+/// The program for points with texture coordinates and colours beside them, in this order. Dual splits and the square root have none.
+pub(crate) fn beside(
+    (cage, rules): (&Cage<'_>, &Rules),
+    sides: [Option<&Beside<'_>>; 2],
+    to: u32,
+    limits: Limits,
+) -> Result<Program, Error> {
+    let mut builder = Builder::new(limits);
+    let (mut once, mut each): (Vec<Dispatch>, Vec<Dispatch>) = Default::default();
+    let vertices = cage.start.len() as u32;
+    let id = builder.make("cage", 16 * u64::from(vertices), Role::Cage)?;
+    let chain = Chain::new(&mut builder, (cage, id), rules, to, Role::Vertices, (&mut once, &mut each))?;
+    let mut extras = [None, None];
+    for (extra, beside) in extras.iter_mut().zip(sides) {
+        let Some(beside) = beside else { continue };
+        let id = builder.filled("values", &[&beside.values])?;
+        // They do not move with the cage.
+        let mut then = Vec::new();
+        let (cage, rules) = (&beside.cage, &beside.rules);
+        *extra = Some(Chain::new(&mut builder, (cage, id), rules, to, Role::Work, (&mut once, &mut then))?);
+        once.extend(then);
+    }
+    drawn(builder, (id, vertices), &chain, extras, (once, each))
+}
+
+/// The levels of some values, and what is known of the last but one.
+pub(crate) struct Chain {
+    split: Split,
+    /// Whether the last but one is level 0.
+    base: bool,
+    read: [Id; 5],
+    numbers: Level,
+    next: Size,
+    values: Id,
+    count: u32,
+}
+
+impl Chain {
+    /// Lists everything up to the last level's values. `values` are those of the cage, `role` is that of the last ones.
+    fn new(
+        builder: &mut Builder,
+        (cage, values): (&Cage<'_>, Id),
+        rules: &Rules,
+        to: u32,
+        role: Role,
+        (once, each): (&mut Vec<Dispatch>, &mut Vec<Dispatch>),
+    ) -> Result<Chain, Error> {
+        let scheme = rules.scheme;
+        let split = scheme.split();
+        cage.check(split)?;
+        if to == 0 {
+            return Err(Error::Mismatch { what: "levels", found: 0, expected: 1 });
         }
-        if k + 1 == to {
-            each.extend(builder.step(Kernel::Normals(variant(0, false)), &all, &read, &[points]));
-            let kernel = Kernel::Faces(variant(0, false));
-            let corners = split != Split::Quad;
-            // Of the dual split the triangles of its polygons.
-            let faces = if split == Split::Dual { next.half_edges - 2 * next.faces } else { next.faces };
-            let kinds = [numbers.first_face, numbers.first_edge];
-            let drawn = Drawn::fused(&mut builder, corners, kinds, faces)?;
-            for piece in drawn.pieces() {
-                let range = &piece.faces;
-                let numbers = match split {
-                    Split::Dual => Level { step: range.start, marked: range.end, ..all },
-                    _ => Level { first: range.start, end: range.end, ..numbers },
-                };
-                let step = builder.step(kernel, &numbers, &read, &[points, piece.buffer]);
-                // Indices stay; corners hold points.
-                if corners { &mut each } else { &mut once }.extend(step);
-            }
-            let count = next.vertices as u32;
-            let bounds = Some(builder.bounds(points, count, &mut each)?);
-            let (vertices, cage, cage_vertices) = (points, cage_points, sizes[0].vertices as u32);
-            let (shaders, buffers, packed) = (builder.shaders(), builder.buffers, None);
-            return Ok(Program {
-                buffers,
-                shaders,
-                once,
-                each,
-                cage,
-                cage_vertices,
-                vertices,
-                count,
-                drawn,
-                packed,
-                bounds,
-            });
+        let mut sizes = vec![cage.size()];
+        for k in 0..to as usize {
+            let next = sizes.get(k).map_or(Size::default(), |s| s.split(split));
+            sizes.push(next);
         }
-        let tables = if split == Split::Dual { 2 * next.half_edges + next.faces + 1 } else { 0 };
-        let child = HalfEdges {
-            half_edges: builder.make("the half-edges", 8 * next.half_edges, Role::Work)?,
-            starts: builder.make("starts", 4 * (next.vertices + tables), Role::Work)?,
-            sharpness: match creased {
-                true => Some(builder.make("sharpness", 4 * next.half_edges, Role::Work)?),
-                false => None,
+        let sizes_before = sizes.iter().rev().skip(1);
+        let last = sizes.last().copied().unwrap_or_default();
+        // Ids are 31 bits, whatever memory there is.
+        let ids = sizes_before.clone().map(|s| s.half_edges).max().unwrap_or(0);
+        if ids >= 1 << 31 {
+            return Err(Error::TooLarge { what: "the half-edges", bytes: ids.saturating_mul(8), limit: 8 << 31 });
+        }
+        builder.admit("the vertices", last.vertices.saturating_mul(16))?;
+        for size in sizes_before {
+            builder.admit("the half-edges", size.half_edges.saturating_mul(8))?;
+        }
+
+        let creased = cage.is_creased() && scheme.softens();
+        let all_marks = cage.marks();
+        let marked = all_marks.len() as u32;
+        let marks = builder.filled("marks", &[&all_marks])?;
+        let turn = |n: u32| std::f64::consts::TAU / f64::from(n.max(1));
+        let all_angles: Vec<[f32; 2]> =
+            (0..2 * cage.valence().max(8) + 1).map(|n| [turn(n).cos() as f32, turn(n).sin() as f32]).collect();
+        let angles = builder.filled("angles", &[&all_angles])?;
+        // Bound where a level has no such thing to read, and none to write.
+        let nothing = builder.make("nothing", 16, Role::Work)?;
+        let nowhere = builder.make("nowhere", 16, Role::Work)?;
+
+        let faces: Vec<u32> =
+            (0..).zip(cage.offsets.windows(2)).flat_map(|(f, w)| (w[0]..w[1]).map(move |_| f)).collect();
+        let turns = if split == Split::Dual { cage.turns() } else { Vec::new() };
+        let mut held = HalfEdges {
+            half_edges: builder.filled("half-edges", &[cage.twin, cage.origin])?,
+            starts: builder.filled("starts", &[cage.start, &faces, cage.edge, cage.offsets, &turns])?,
+            sharpness: match (creased, cage.sharpness.is_empty()) {
+                (false, _) => None,
+                (true, false) => Some(builder.filled("sharpness", &[cage.sharpness])?),
+                (true, true) => Some(builder.filled("sharpness", &[&vec![0.0f32; cage.twin.len()]])?),
             },
         };
-        let made = [child.half_edges, child.starts, child.sharpness.unwrap_or(nowhere)];
-        let old = if split == Split::Dual { 0 } else { numbers.vertices };
-        let all = Level { end: numbers.half_edges + old, ..numbers };
-        once.extend(builder.step(Kernel::Split(variant(0, creased)), &all, &read, &made));
-        held = child;
+        drop(faces);
+        let mut points = values;
+        for k in 0..to {
+            let at = k as usize;
+            let (size, next) = (sizes[at], sizes[at + 1]);
+            let before = if k == 0 { Size::default() } else { sizes[at - 1] };
+            let numbers = level(rules, marked, k, size, before);
+            let variant = |scheme, creased| Variant { split, base: k == 0 && split != Split::Sqrt3, creased, scheme };
+            let read = [held.half_edges, held.starts, marks, held.sharpness.unwrap_or(nothing), angles];
+            let role = if k + 1 == to { role } else { Role::Work };
+            let new = builder.make("the vertices", 16 * next.vertices, role)?;
+            // The dual split's children are of half-edges.
+            let elements = if split == Split::Dual { numbers.half_edges } else { numbers.faces + numbers.vertices };
+            let all = Level { end: elements, ..numbers };
+            let kernel = Kernel::Points(variant(scheme.number(), creased));
+            each.extend(builder.step(kernel, &all, &read, &[points, new]));
+            points = new;
+            if k + 1 == to {
+                let (base, count) = (variant(0, false).base, next.vertices as u32);
+                return Ok(Chain { split, base, read, numbers, next, values: points, count });
+            }
+            let tables = if split == Split::Dual { 2 * next.half_edges + next.faces + 1 } else { 0 };
+            let child = HalfEdges {
+                half_edges: builder.make("the half-edges", 8 * next.half_edges, Role::Work)?,
+                starts: builder.make("starts", 4 * (next.vertices + tables), Role::Work)?,
+                sharpness: match creased {
+                    true => Some(builder.make("sharpness", 4 * next.half_edges, Role::Work)?),
+                    false => None,
+                },
+            };
+            let made = [child.half_edges, child.starts, child.sharpness.unwrap_or(nowhere)];
+            let old = if split == Split::Dual { 0 } else { numbers.vertices };
+            let all = Level { end: numbers.half_edges + old, ..numbers };
+            once.extend(builder.step(Kernel::Split(variant(0, creased)), &all, &read, &made));
+            held = child;
+        }
+        Err(Error::Mismatch { what: "levels", found: 0, expected: 1 })
     }
-    Err(Error::Mismatch { what: "levels", found: 0, expected: 1 })
+}
+
+/// The end of a program: normals, faces, what corners carry, the box.
+fn drawn(
+    mut builder: Builder,
+    (cage, cage_vertices): (Id, u32),
+    chain: &Chain,
+    extras: [Option<Chain>; 2],
+    (mut once, mut each): (Vec<Dispatch>, Vec<Dispatch>),
+) -> Result<Program, Error> {
+    let &Chain { split, base, read, numbers, next, values: points, count } = chain;
+    let variant = Variant { split, base, creased: false, scheme: 0 };
+    // The dual split's children are of half-edges.
+    let elements = if split == Split::Dual { numbers.half_edges } else { numbers.faces + numbers.vertices };
+    let all = Level { end: elements, ..numbers };
+    each.extend(builder.step(Kernel::Normals(variant), &all, &read, &[points]));
+    let carries = extras.each_ref().map(Option::is_some);
+    let corners = split != Split::Quad || carries.contains(&true);
+    // Triangles: of the dual split those of its polygons, two a quad.
+    let faces = match split {
+        Split::Dual => next.half_edges - 2 * next.faces,
+        Split::Quad if corners => 2 * next.faces,
+        _ => next.faces,
+    };
+    let kinds = [numbers.first_face, numbers.first_edge];
+    let drawn = Drawn::fused(&mut builder, corners, kinds, faces, carries)?;
+    for piece in drawn.pieces() {
+        let range = &piece.faces;
+        let (kernel, share) = match split {
+            Split::Quad if corners => (Kernel::QuadCorners(variant), 2),
+            _ => (Kernel::Faces(variant), 1),
+        };
+        let mine = |numbers: Level| Level { first: range.start / share, end: range.end / share, ..numbers };
+        let of_piece = match split {
+            Split::Dual => Level { step: range.start, marked: range.end, ..all },
+            _ => mine(numbers),
+        };
+        let step = builder.step(kernel, &of_piece, &read, &[points, piece.buffer]);
+        // Indices stay; corners hold points.
+        if corners { &mut each } else { &mut once }.extend(step);
+        for (chain, color) in extras.iter().zip([false, true]) {
+            let (Some(chain), Some(extra)) = (chain, piece.extra) else { continue };
+            let kernel = Kernel::Extras(Variant { split, base: chain.base, creased: false, scheme: color.into() });
+            once.extend(builder.step(kernel, &mine(chain.numbers), &chain.read, &[chain.values, extra]));
+        }
+    }
+    let bounds = Some(builder.bounds(points, count, &mut each)?);
+    let (shaders, buffers, packed, runs) = (builder.shaders(), builder.buffers, None, Vec::new());
+    let vertices = points;
+    Ok(Program { buffers, shaders, once, each, cage, cage_vertices, vertices, count, drawn, packed, bounds, runs })
 }

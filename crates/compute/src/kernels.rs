@@ -78,6 +78,10 @@ pub(crate) enum Kernel {
     Normals(Variant),
     /// Its faces: indices of quads, corners of triangles.
     Faces(Variant),
+    /// Corners of quads.
+    QuadCorners(Variant),
+    /// What corners carry, from values on these half-edges; `scheme` 1 for colours, 0 for texture coordinates.
+    Extras(Variant),
     /// Points from rows; whether constants move them.
     Rows { moved: bool },
     /// Normals of listed faces.
@@ -131,6 +135,12 @@ impl Kernel {
             if !creased {
                 all.extend([Kernel::Normals(variant(0)), Kernel::Faces(variant(0))]);
             }
+            if !creased && matches!(split, Split::Quad | Split::Triangle) {
+                all.extend([Kernel::Extras(variant(0)), Kernel::Extras(variant(1))]);
+            }
+            if !creased && split == Split::Quad {
+                all.push(Kernel::QuadCorners(variant(0)));
+            }
         }
         all
     }
@@ -143,6 +153,8 @@ impl Kernel {
             Kernel::Normals(_) | Kernel::ListedNormals => "normals",
             Kernel::ListedCorners => "listed_corners",
             Kernel::Colors => "colors",
+            Kernel::QuadCorners(_) => "quad_corners",
+            Kernel::Extras(_) => "extras",
             Kernel::Bounds => "bounds",
             Kernel::Faces(_) | Kernel::ListedFaces => "faces",
         }
@@ -158,9 +170,12 @@ impl Kernel {
             Kernel::ListedFaces | Kernel::ListedNormals | Kernel::ListedCorners => {
                 return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
             }
-            Kernel::Colors => return format!("{work}{}", wgsl!("shaders/colors.wgsl")),
+            Kernel::Colors => {
+                return format!("{work}{}{}", wgsl!("shaders/srgb.wgsl"), wgsl!("shaders/colors.wgsl"));
+            }
             Kernel::Bounds => return format!("{work}{}", wgsl!("shaders/bounds.wgsl")),
             Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
+            Kernel::QuadCorners(v) | Kernel::Extras(v) => v,
         };
         let Variant { split, base, creased, scheme } = variant;
         let sides = match (split, base) {
@@ -181,6 +196,11 @@ impl Kernel {
             (Kernel::Points(_), Split::Triangle) => head + creases + wgsl!("shaders/triangles.wgsl"),
             (Kernel::Points(_), Split::Sqrt3) => head + wgsl!("shaders/sqrt3.wgsl"),
             (Kernel::Points(_), Split::Dual) => head + wgsl!("shaders/dual.wgsl"),
+            (Kernel::Extras(_), _) => {
+                let quads = split == Split::Quad;
+                let [srgb, extras] = [wgsl!("shaders/srgb.wgsl"), wgsl!("shaders/extras.wgsl")];
+                format!("const QUADS = {quads};\n{head}{srgb}{extras}")
+            }
             (Kernel::Split(_), Split::Quad) => head + creases + wgsl!("shaders/split_quads.wgsl"),
             (Kernel::Split(_), Split::Triangle) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
             (Kernel::Split(_), Split::Sqrt3) => head + wgsl!("shaders/split_sqrt3.wgsl"),
@@ -200,7 +220,8 @@ impl Kernel {
             Kernel::Points(_) => [LEVEL, &[Read, Write]],
             Kernel::Split(_) => [LEVEL, &[Write, Write, Write]],
             Kernel::Normals(_) => [LEVEL, &[Write]],
-            Kernel::Faces(_) => [LEVEL, &[Write, Write]],
+            Kernel::Faces(_) | Kernel::QuadCorners(_) => [LEVEL, &[Write, Write]],
+            Kernel::Extras(_) => [LEVEL, &[Read, Write]],
             Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
             Kernel::Colors | Kernel::Bounds => [&[Uniform], &[Read, Write]],

@@ -7,12 +7,14 @@
 //!
 //! What is not made here at all says [`program`]: its caller refines on the CPU. Cost: linear in the cage.
 
+use crate::fused::{Beside, beside};
+use crate::kernels::Split;
 use crate::program::{Limits, Program};
 use crate::rows::{Pass, RowLevel};
 use crate::{Cage, Error, Rules, Scheme, Values, fused};
 use limn_mesh::refine::{Recorded, RefineError, record};
 use limn_mesh::sink::Source;
-use limn_mesh::{Boundary, Connectivity, Decay, Mesh, Plan, TriangleRule};
+use limn_mesh::{Boundary, Connectivity, Decay, FaceVarying, Mesh, Plan, Topology, TriangleRule};
 
 /// Level 0 in full.
 #[derive(Clone, Debug, Default)]
@@ -27,28 +29,41 @@ impl Tables {
     /// Those of a mesh.
     pub fn of(mesh: &Mesh) -> Tables {
         let t = &mesh.topology;
-        let half_edges = 0..t.half_edges();
         let sharp = |h: u32| mesh.edge_sharpness.get(t.edge(h) as usize).copied().unwrap_or(0.0);
+        let sharpness = if mesh.edge_sharpness.is_empty() { vec![] } else { (0..t.half_edges()).map(sharp).collect() };
+        Tables { sharpness, ..Tables::on(t) }
+    }
+
+    /// Those of half-edges without marks.
+    fn on(t: &Topology) -> Tables {
+        let half_edges = 0..t.half_edges();
         Tables {
             twin: half_edges.clone().map(|h| t.twin(h)).collect(),
-            edge: half_edges.clone().map(|h| t.edge(h)).collect(),
+            edge: half_edges.map(|h| t.edge(h)).collect(),
             start: (0..t.vertices()).map(|v| t.vertex_half_edge(v)).collect(),
-            sharpness: if mesh.edge_sharpness.is_empty() { vec![] } else { half_edges.map(sharp).collect() },
+            sharpness: Vec::new(),
         }
     }
 
     /// With what the mesh has itself.
     pub fn cage<'a>(&'a self, mesh: &'a Mesh) -> Cage<'a> {
         Cage {
-            offsets: mesh.topology.offsets(),
-            twin: &self.twin,
-            origin: mesh.topology.origins(),
-            edge: &self.edge,
-            start: &self.start,
             stays: &mesh.sharp,
             joined: &mesh.joined,
-            sharpness: &self.sharpness,
             vertex_sharpness: &mesh.vertex_sharpness,
+            ..self.on_half_edges(&mesh.topology)
+        }
+    }
+
+    fn on_half_edges<'a>(&'a self, t: &'a Topology) -> Cage<'a> {
+        Cage {
+            offsets: t.offsets(),
+            twin: &self.twin,
+            origin: t.origins(),
+            edge: &self.edge,
+            start: &self.start,
+            sharpness: &self.sharpness,
+            ..Cage::default()
         }
     }
 }
@@ -92,20 +107,79 @@ fn is_all_round(mesh: &Mesh) -> bool {
 }
 
 /// The program of a plan that is shown as a whole: none where the CPU has to do it, because the scheme has no kernels of its own on
-/// such a mesh, or for what is not drawn of points alone (colours, texture coordinates, hidden faces, limits).
+/// such a mesh, or faces are hidden, or what goes with points does not go this way: texture coordinates with creases, by rules that keep
+/// seams straight, or of dual splits and the square root; parts of these, or scattered ones. `parts` are those of the file's
+/// faces, empty if there is one.
 ///
 /// # Errors
 /// As [`fused`].
-pub fn program(mesh: &Mesh, plan: &Plan, limits: Limits) -> Result<Option<Program>, Error> {
-    let bare = mesh.colors.is_empty() && mesh.uv.is_none() && mesh.holes.is_empty();
+pub fn program(mesh: &Mesh, plan: &Plan, parts: &[u32], limits: Limits) -> Result<Option<Program>, Error> {
     let whole = mesh.topology.boundary_half_edges() == 0 || plan.rules.boundary != Boundary::None;
-    match rules(mesh, plan).filter(|_| bare && whole && plan.level > 0) {
-        Some(rules) => {
-            let tables = Tables::of(mesh);
-            fused(&tables.cage(mesh), &rules, plan.level, Values::Points, limits).map(Some)
-        }
-        None => Ok(None),
+    let Some(rules) = rules(mesh, plan).filter(|_| whole && mesh.holes.is_empty() && plan.level > 0) else {
+        return Ok(None);
+    };
+    let tables = Tables::of(mesh);
+    let cage = tables.cage(mesh);
+    let split = rules.scheme.split();
+    if mesh.colors.is_empty() && mesh.uv.is_none() && parts.is_empty() {
+        return fused(&cage, &rules, plan.level, Values::Points, limits).map(Some);
     }
+    let keeps_corners = matches!(split, Split::Quad | Split::Triangle);
+    let straight = matches!(plan.rules.face_varying, FaceVarying::Boundaries | FaceVarying::All);
+    if !keeps_corners || mesh.uv.is_some() && (straight || cage.is_creased()) {
+        return Ok(None);
+    }
+    let Some(runs) = runs(mesh, parts, split, plan.level) else { return Ok(None) };
+    let colors = (!mesh.colors.is_empty()).then(|| Beside { cage, rules, values: mesh.colors.clone() });
+    let pins = mesh.pinned_uv(&plan.rules);
+    let channel = mesh.uv.as_ref().map(|uv| (uv, Tables::on(&uv.topology)));
+    let uv = channel.as_ref().map(|(uv, tables)| Beside {
+        cage: Cage { stays: &pins, ..tables.on_half_edges(&uv.topology) },
+        // Corners are among the pins, and no others.
+        rules: Rules { corners: false, ..rules },
+        values: uv.values.iter().map(|&[u, v]| [u, v, 0.0, 0.0]).collect(),
+    });
+    let mut program = beside((&cage, &rules), [uv.as_ref(), colors.as_ref()], plan.level, limits)?;
+    let elements = if split == Split::Quad { 6 } else { 3 };
+    program.runs = runs.into_iter().map(|[part, faces]| [part, faces * elements]).collect();
+    Ok(Some(program))
+}
+
+/// Parts in the order of a level's faces, and how many faces each run has; none if there are too many runs to be drawn one by one.
+fn runs(mesh: &Mesh, parts: &[u32], split: Split, level: u32) -> Option<Vec<[u32; 2]>> {
+    /// Draws of a frame, at most.
+    const MOST: usize = 1000;
+    let mut runs: Vec<[u32; 2]> = Vec::new();
+    if parts.is_empty() {
+        return Some(runs);
+    }
+    fn push(runs: &mut Vec<[u32; 2]>, [part, faces]: [u32; 2]) {
+        match runs.last_mut() {
+            Some(last) if last[0] == part => last[1] += faces,
+            _ => runs.push([part, faces]),
+        }
+    }
+    for (f, source) in (0..).zip(&mesh.face_source) {
+        let part = parts.get(*source as usize).copied().unwrap_or(0);
+        // A quad split's first children are one a corner.
+        let children = if split == Split::Quad { mesh.topology.face_half_edges(f).len() as u32 } else { 1 };
+        push(&mut runs, [part, children]);
+    }
+    for _ in u32::from(split == Split::Quad)..level {
+        let mut next = Vec::new();
+        if split == Split::Quad {
+            runs.iter().for_each(|&[part, faces]| push(&mut next, [part, 4 * faces]));
+        } else {
+            // Those at corners, then those in the middle.
+            runs.iter().for_each(|&[part, faces]| push(&mut next, [part, 3 * faces]));
+            runs.iter().for_each(|&run| push(&mut next, run));
+        }
+        runs = next;
+        if runs.len() > MOST {
+            return None;
+        }
+    }
+    Some(runs)
 }
 
 /// The plan's rows, step by step. Cost: that of recording, some 200 ns a row.

@@ -39,6 +39,8 @@ pub enum Role {
     Indices,
     /// Drawn: corners, a vertex buffer.
     Corners,
+    /// Drawn: what corners carry, a vertex buffer.
+    Extras,
     /// Drawn: colours, a vertex buffer; can be copied from.
     Colors,
     /// [`crate::bounds`] of the points: cleared before a run, can be copied from.
@@ -107,15 +109,17 @@ pub struct Program {
     pub packed: Option<Id>,
     /// Six numbers that [`crate::bounds`] reads; none of colours.
     pub bounds: Option<Id>,
+    /// Parts of the model in the order of drawn elements (indices or corners): the part, and how many. Empty where there is one.
+    pub runs: Vec<[u32; 2]>,
 }
 
 impl Program {
-    /// What `limn_render::Surface::reserve` makes drawn buffers of: vertices, where face and edge points begin (0 for triangles), and
-    /// the end of each piece.
+    /// What `limn_render::Surface::reserve` makes drawn buffers of: vertices, where face and edge points begin (of corners what
+    /// they carry, 1 for texture coordinates and 2 for colours, and 0), and the end of each piece.
     pub fn shape(&self) -> Vec<u32> {
         let kinds = match self.drawn {
             Drawn::Quads { kinds, .. } => kinds,
-            Drawn::Corners { .. } => [0; 2],
+            Drawn::Corners { carries: [uv, colors], .. } => [u32::from(uv) | u32::from(colors) << 1, 0],
         };
         let ends = self.drawn.pieces().iter().map(|piece| piece.faces.end);
         [self.count, kinds[0], kinds[1]].into_iter().chain(ends).collect()

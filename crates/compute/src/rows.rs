@@ -193,7 +193,7 @@ pub fn rows(rows: &Rows<'_>, values: Values, limits: Limits) -> Result<Program, 
         each.extend(builder.step(kernel, &Level { end, ..Level::default() }, &read, &work));
     }
     let drawn = Drawn::listed(&mut builder, rows)?;
-    if let Drawn::Corners { pieces } = &drawn {
+    if let Drawn::Corners { pieces, .. } = &drawn {
         let table = triangles(rows);
         for piece in pieces {
             let mine = table.get(piece.faces.start as usize..piece.faces.end as usize).unwrap_or(&[]);
@@ -208,5 +208,18 @@ pub fn rows(rows: &Rows<'_>, values: Values, limits: Limits) -> Result<Program, 
     let (once, cage_vertices) = (Vec::new(), rows.cage);
     let (shaders, buffers) = (builder.shaders(), builder.buffers);
     let (vertices, count, packed) = (points, before, None);
-    Ok(Program { buffers, shaders, once, each, cage, cage_vertices, vertices, count, drawn, packed, bounds })
+    Ok(Program {
+        buffers,
+        shaders,
+        once,
+        each,
+        cage,
+        cage_vertices,
+        vertices,
+        count,
+        drawn,
+        packed,
+        bounds,
+        runs: Vec::new(),
+    })
 }

@@ -21,13 +21,16 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     fn start(this: &Kernel, plan: &[u8], budget: f64) -> Result<Run, JsValue>;
     #[wasm_bindgen(method, catch)]
-    fn draw(this: &Kernel, plan: &[u8], buffer: f64, groups: u32) -> Result<Option<Drawing>, JsValue>;
+    fn draw(this: &Kernel, plan: &[u8], buffer: f64, groups: u32, parts: &[u32]) -> Result<Option<Drawing>, JsValue>;
 
     /// `Picture` of `web/compute.js`: a plan that the GPU refines.
     pub type Drawing;
     /// What [`limn_render::Surface::reserve`] makes buffers of.
     #[wasm_bindgen(method)]
     pub fn shape(this: &Drawing) -> Vec<u32>;
+    /// What [`limn_render::Surface::settle`] takes.
+    #[wasm_bindgen(method)]
+    fn runs(this: &Drawing) -> Vec<u32>;
     /// Fills the buffers that were made last.
     #[wasm_bindgen(method)]
     pub fn run(this: &Drawing);
@@ -70,11 +73,11 @@ impl Remote {
     }
 
     /// What the GPU does for a plan; none if it cannot, or its buffers do not take it: then the CPU has to, or says why not.
-    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, gpu: &Gpu) -> Option<Drawing> {
+    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], gpu: &Gpu) -> Option<Drawing> {
         self.take(mesh).ok()?;
         let limits = gpu.device.limits();
         let buffer = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        self.kernel.draw(&plan.pack(), buffer as f64, limits.max_compute_workgroups_per_dimension).ok()?
+        self.kernel.draw(&plan.pack(), buffer as f64, limits.max_compute_workgroups_per_dimension, parts).ok()?
     }
 
     fn take(&mut self, mesh: &Arc<Mesh>) -> Result<(), String> {
@@ -111,6 +114,10 @@ impl Work for Away {
 impl Gpus for Drawing {
     fn bounds(&self) -> Result<Vec<f32>, ()> {
         Drawing::bounds(self).map_err(drop)
+    }
+
+    fn runs(&self) -> Vec<u32> {
+        Drawing::runs(self)
     }
 }
 

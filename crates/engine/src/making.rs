@@ -56,9 +56,9 @@ impl Parts {
         parts
     }
 
-    /// Whether there is one part at most.
-    pub fn is_one(&self) -> bool {
-        self.list.len() < 2
+    /// The part of each face of the soup; empty if there is one.
+    pub fn of_faces(&self) -> &[u32] {
+        if self.list.len() < 2 { &[] } else { &self.of_face }
     }
 
     /// The group of a face of the soup.
@@ -155,6 +155,8 @@ pub trait Gpus {
     /// # Errors
     /// If it failed, and the CPU has to do it.
     fn bounds(&self) -> Result<Vec<f32>, ()>;
+    /// The runs of parts.
+    fn runs(&self) -> Vec<u32>;
 }
 
 impl Work for Job {
@@ -278,7 +280,7 @@ impl Making {
             Stage::Wait(gpu, mut surface, made, since) => match gpu.bounds().as_deref() {
                 Ok(&[a, b, c, d, e, f]) => {
                     self.spent[0] = start - since;
-                    surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, made.parts.list.first().copied());
+                    surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, &made.parts.list, &gpu.runs());
                     return Ok(Step::Done(made, surface));
                 }
                 Ok(_) => (Stage::Wait(gpu, surface, made, since), 1),

@@ -43,6 +43,11 @@ impl Drawing {
         self.program.shape()
     }
 
+    /// The runs of parts that `limn_render::Surface::settle` takes.
+    pub fn runs(&self) -> Vec<u32> {
+        self.program.runs.as_flattened().to_vec()
+    }
+
     /// The cage's points, four numbers each.
     pub fn points(&self) -> Vec<f32> {
         self.points.clone()
@@ -114,12 +119,14 @@ impl Drawing {
                 Role::Vertices => "vertices",
                 Role::Indices => "indices",
                 Role::Corners => "corners",
+                Role::Extras => "extras",
                 Role::Colors => "colors",
                 Role::Bounds => "bounds",
             },
             bytes: b.bytes as u32,
             filled: !b.contents.is_empty(),
-            drawn: matches!(b.role, Role::Indices | Role::Corners) || (b.role == Role::Vertices && shared),
+            drawn: matches!(b.role, Role::Indices | Role::Corners | Role::Extras)
+                || (b.role == Role::Vertices && shared),
         };
         let access = |a: &Access| match a {
             Access::Uniform => 0,

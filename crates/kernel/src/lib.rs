@@ -65,14 +65,14 @@ impl Kernel {
     }
 
     /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension. None
-    /// where the CPU has to refine: `limn_compute::program`.
+    /// where the CPU has to refine: `limn_compute::program`, which takes the `parts` of the file's faces.
     ///
     /// # Errors
     /// One sentence: the bytes are no plan, or there is no mesh, or a buffer would be too large.
-    pub fn draw(&self, plan: &[u8], buffer: f64, groups: u32) -> Result<Option<Drawing>, String> {
+    pub fn draw(&self, plan: &[u8], buffer: f64, groups: u32, parts: &[u32]) -> Result<Option<Drawing>, String> {
         let mesh = self.mesh.as_ref().ok_or("there is no mesh to refine")?;
         let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
-        let program = limn_compute::program(mesh, &plan, limits(buffer, groups)).map_err(|e| e.to_string())?;
+        let program = limn_compute::program(mesh, &plan, parts, limits(buffer, groups)).map_err(|e| e.to_string())?;
         Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
     }
 }

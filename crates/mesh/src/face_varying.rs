@@ -57,6 +57,14 @@ struct Fan {
     creased: bool,
 }
 
+#[cfg(feature = "full")]
+impl Mesh {
+    /// The texture coordinates that stay where they are, at every level unless the rule is `boundaries`; empty if there are none.
+    pub fn pinned_uv(&self, rules: &Rules) -> Vec<bool> {
+        self.uv.as_ref().map_or_else(Vec::new, |uv| pins(self, uv, rules).0)
+    }
+}
+
 /// The values of `mesh` that stay where they are, and the half-edges of `uv` that are no boundary of a region though they
 /// were cut from other faces: where three faces meet on an edge and agree on its values. Cost: linear.
 pub(crate) fn pins(mesh: &Mesh, uv: &UvChannel, rules: &Rules) -> (Vec<bool>, Vec<u32>) {

@@ -36,6 +36,7 @@ pub struct Refiner {
     vertices: wgpu::Buffer,
     count: u32,
     surface: Surface,
+    runs: Vec<[u32; 2]>,
     /// Colours as the draw reads them.
     packed: Option<wgpu::Buffer>,
     bounds: Option<wgpu::Buffer>,
@@ -64,7 +65,9 @@ impl Refiner {
             .iter()
             .map(|b| match b.role {
                 Role::Vertices if !matches!(program.drawn, Drawn::Quads { .. }) => make(gpu, b),
-                Role::Vertices | Role::Indices | Role::Corners => drawn.next().unwrap_or_else(|| make(gpu, b)),
+                Role::Vertices | Role::Indices | Role::Corners | Role::Extras => {
+                    drawn.next().unwrap_or_else(|| make(gpu, b))
+                }
                 _ => make(gpu, b),
             })
             .collect();
@@ -98,6 +101,7 @@ impl Refiner {
             packed: program.packed.map(&at).transpose()?.cloned(),
             bounds: program.bounds.map(&at).transpose()?.cloned(),
             surface,
+            runs: program.runs.clone(),
             bytes: program.bytes(),
         })
     }
@@ -152,7 +156,7 @@ impl Refiner {
     /// [`Error::Mismatch`] where there are colours and faces do not share vertices, or the colours are of others.
     pub fn surface(&self, bounds: Bounds, colors: Option<&Refiner>) -> Result<Surface, Error> {
         let mut surface = self.surface.clone();
-        surface.bounds = bounds;
+        surface.settle(bounds, &[], self.runs.as_flattened());
         if let Some(r) = colors {
             match &mut surface.layout {
                 Layout::Shared { colors, .. } if r.count == self.count && r.packed.is_some() => {
@@ -198,7 +202,7 @@ fn make(gpu: &Gpu, b: &Buffer) -> wgpu::Buffer {
         Role::Table | Role::Cage => U::COPY_DST,
         Role::Vertices | Role::Colors => U::VERTEX | U::COPY_SRC,
         Role::Indices => U::INDEX,
-        Role::Corners => U::VERTEX,
+        Role::Corners | Role::Extras => U::VERTEX,
         Role::Bounds => U::COPY_SRC | U::COPY_DST,
     };
     buffer(gpu, b.what, b.bytes, usage | U::STORAGE | if b.contents.is_empty() { U::empty() } else { U::COPY_DST })

@@ -16,7 +16,7 @@
 //!
 //! [`crate::Upload`] makes the buffers.
 
-use crate::corners::{Triangulate, fan};
+use crate::corners::{Extra, Triangulate, fan};
 use crate::{Error, Gpu};
 
 /// Faces as plain slices of vertex indices.
@@ -241,8 +241,8 @@ pub struct Surface {
 
 impl Surface {
     /// A surface whose buffers are filled by compute, in the layout that [`Upload`](crate::Upload) gives them. `shape` is the number of
-    /// vertices, the vertices where face points and edge points begin (both 0 for triangles, which have corners), and the face at which
-    /// each buffer of indices or corners ends. The buffers are labelled `refined`, and made in the order of [`Surface::filled`].
+    /// vertices, the vertices where face points and edge points begin (of corners what they carry, 1 for texture coordinates and 2 for colours, and 0), and the
+    /// quad, of corners the triangle, at which each buffer ends. The buffers are labelled `refined`, and made in the order of [`Surface::filled`].
     pub fn reserve(gpu: &Gpu, shape: &[u32]) -> Surface {
         let base = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let [count, a, b, ends @ ..] = shape else { return Surface::reserve(gpu, &[0; 3]) };
@@ -256,20 +256,31 @@ impl Surface {
             let layout = Layout::Shared { vertices, count: *count, colors: None, kinds: [*a, *b] };
             (layout, base | wgpu::BufferUsages::INDEX, [6, 4])
         } else {
-            (Layout::Corners { extras: false }, base | wgpu::BufferUsages::VERTEX, [3, 24])
+            (Layout::Corners { extras: *a > 0 }, base | wgpu::BufferUsages::VERTEX, [3, 24])
         };
+        let extras = matches!(layout, Layout::Corners { extras: true });
         let mut first = 0;
         let chunk = |&end: &u32| {
             let count = u64::from(end) * elements - first;
             let buffer = buffer(gpu, "refined", count * bytes, usage);
-            let chunk = Chunk { buffer, extra: None, first, count, capacity: count };
+            let extra =
+                extras.then(|| crate::surface::buffer(gpu, "refined", count * size_of::<Extra>() as u64, usage));
+            let chunk = Chunk { buffer, extra, first, count, capacity: count };
             first += count;
             chunk
         };
         let chunks = ends.iter().map(chunk).collect();
         let (runs, parts) =
             (vec![Run { part: 0, first: 0, count: first }], vec![Part { material: u32::MAX, group: 0 }]);
-        Surface { layout, chunks, runs, parts, has_uv: false, has_colors: false, bounds: Bounds::EMPTY }
+        Surface {
+            layout,
+            chunks,
+            runs,
+            parts,
+            has_uv: extras && a & 1 > 0,
+            has_colors: extras && a & 2 > 0,
+            bounds: Bounds::EMPTY,
+        }
     }
 
     /// The buffers that compute fills: vertices that faces share, then those of faces.
@@ -279,13 +290,26 @@ impl Surface {
             Layout::Shared { vertices, .. } => Some(vertices),
             Layout::Corners { .. } => None,
         };
-        vertices.into_iter().chain(self.chunks.iter().map(|c| &c.buffer)).cloned().collect()
+        let of_faces = self.chunks.iter().flat_map(|c| [Some(&c.buffer), c.extra.as_ref()]);
+        std::iter::once(vertices).chain(of_faces).flatten().cloned().collect()
     }
 
-    /// What holds of the buffers that compute filled: the box of the points, and the one part that all faces belong to.
-    pub fn settle(&mut self, bounds: Bounds, part: Option<Part>) {
+    /// What holds of the buffers that compute filled: the box of the points, and where there are several parts their runs: pairs of a
+    /// part and a number of elements (indices or corners).
+    pub fn settle(&mut self, bounds: Bounds, parts: &[Part], runs: &[u32]) {
         self.bounds = bounds;
-        self.parts = vec![part.unwrap_or(Part { material: u32::MAX, group: 0 })];
+        if !parts.is_empty() {
+            self.parts = parts.to_vec();
+        }
+        let mut first = 0;
+        let run = |&[part, count]: &[u32; 2]| {
+            let run = Run { part, first, count: count.into() };
+            first += run.count;
+            run
+        };
+        if !runs.is_empty() {
+            self.runs = runs.as_chunks().0.iter().map(run).collect();
+        }
     }
 
     /// Box around all points that were uploaded.

@@ -12,7 +12,7 @@ use limn_mesh::{
     refine, scheme, shape, triangulate_soup,
 };
 use limn_render::refine::{Compute, Refiner, limits};
-use limn_render::{Bounds, Edges, Error, Gpu, Renderer, Style, Surface, SurfaceData};
+use limn_render::{Bounds, Edges, Error, Gpu, Material, Part, Renderer, Style, Surface, SurfaceData, TextureData};
 use std::sync::Arc;
 
 const BUDGET: u64 = 1 << 30;
@@ -266,7 +266,7 @@ fn more_groups_than_one_dimension_takes() {
         let mesh = build(&if id == "loop" || id == "sqrt3" { triangles(&soup) } else { soup });
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 5);
         let few = Limits { groups: 2, ..limits(check.gpu()) };
-        let program = program(&mesh, &plan, few).unwrap().unwrap();
+        let program = program(&mesh, &plan, &[], few).unwrap().unwrap();
         assert!(program.each.iter().any(|d| d.grid[1] > 2), "{id}");
         let mut refiner = Refiner::new(check.renderer.gpu(), &mut check.compute, &program).unwrap();
         refiner.set_points(check.gpu(), 0, &mesh.positions).unwrap();
@@ -332,6 +332,67 @@ fn pictures_of_both_are_one() {
         let uploaded = upload.finish();
         let surface = refiner.surface(uploaded.bounds(), None).unwrap();
         check.same_picture(uploaded, surface, id);
+    }
+}
+
+/// Texture coordinates across seams, colours, and parts of several materials: what is drawn is what is drawn of uploaded corners.
+#[test]
+fn what_corners_carry_and_parts() {
+    let Some(mut check) = Check::new() else { return };
+    let paint = |color: [f32; 3]| Material { base_color: [color[0], color[1], color[2], 1.0], texture: Some(0) };
+    let rgba: Vec<u8> =
+        (0..64).flat_map(|i| if (i + i / 8) % 2 == 0 { [255; 4] } else { [90, 160, 255, 255] }).collect();
+    check.renderer.set_textures(&[TextureData { width: 8, height: 8, rgba: &rgba }]).unwrap();
+    check.renderer.set_materials(&[paint([0.9, 0.6, 0.3]), paint([0.4, 0.9, 0.5])]);
+    for (id, cut) in [("catmull-clark", false), ("loop", true), ("linear", false), ("modified-butterfly", true)] {
+        for (with_uv, with_colors, with_parts) in
+            [(true, false, false), (false, true, false), (true, true, true), (false, false, true)]
+        {
+            let mut soup = if cut { triangles(&sheet(4)) } else { sheet(4) };
+            if with_uv {
+                // A chart for each half of the sheet, and every fifth face a chart of its own.
+                for f in 0..soup.face_count() {
+                    for &v in soup.face(f).to_vec().iter() {
+                        let [x, y, _] = soup.positions[v as usize];
+                        let chart = if f % 5 == 3 { f as f32 } else { f32::from(u8::from(f > soup.face_count() / 2)) };
+                        soup.uv_corners.push(soup.uvs.len() as u32);
+                        soup.uvs.push([0.25 * x + chart * 0.1, 0.25 * y - chart * 0.05]);
+                    }
+                }
+            }
+            let mut mesh = Mesh::clone(&build(&soup));
+            if with_colors {
+                mesh.colors = mesh.positions.iter().map(|p| [0.2 * p[0], 0.2 * p[1], p[2], 1.0]).collect();
+            }
+            let mesh = Arc::new(mesh);
+            let parts: Vec<u32> = (0..soup.face_count()).map(|f| u32::from(with_parts && f % 3 == 1)).collect();
+            let parts = if with_parts { &parts[..] } else { &[] };
+            let list = [Part { material: 0, group: 0 }, Part { material: 1, group: 0 }];
+            for level in [1, 2, 3] {
+                let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
+                let refined = refine(&mesh, &plan, BUDGET).unwrap();
+                let program = program(&mesh, &plan, parts, limits(check.gpu())).unwrap().unwrap();
+                let mut refiner = Refiner::new(check.renderer.gpu(), &mut check.compute, &program).unwrap();
+                refiner.set_points(check.gpu(), 0, &mesh.positions).unwrap();
+                refiner.refine(check.gpu());
+                check.same(&refiner, &refined, id);
+                let normals = refined.normals();
+                let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
+                (data.parents, data.colors) = (tables::parents(&refined), &refined.colors);
+                data.uv = refined.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
+                data.force_corners = with_colors;
+                let part_of = |f: usize| parts.get(refined.face_source(f as u32) as usize).copied().unwrap_or(0);
+                data.parts = &list;
+                data.part_of = with_parts.then_some(&part_of);
+                let mut upload = check.renderer.upload(&data).unwrap();
+                while !upload.step(check.gpu(), &data, 1000).unwrap() {}
+                let uploaded = upload.finish();
+                let mut surface = refiner.surface(uploaded.bounds(), None).unwrap();
+                surface.settle(uploaded.bounds(), &list, program.runs.as_flattened());
+                let what = format!("{id}-{level}-{with_uv}-{with_colors}-{with_parts}");
+                check.same_picture(uploaded, surface, &what);
+            }
+        }
     }
 }
 

@@ -9,7 +9,5 @@ fn colors(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     if v >= at.end {
         return;
     }
-    let c = clamp(values[v], vec4(0.0), vec4(1.0));
-    let curve = 1.055 * pow(c.rgb, vec3(1.0 / 2.4)) - 0.055;
-    packed[v] = pack4x8unorm(vec4(select(curve, c.rgb * 12.92, c.rgb <= vec3(0.0031308)), c.a));
+    packed[v] = srgb(values[v]);
 }

@@ -9,6 +9,7 @@
 
 @group(1) @binding(0) var<storage, read_write> vertices: array<Vertex>;
 @group(1) @binding(1) var<storage, read_write> indices: array<vec2<u32>>;
+@group(1) @binding(1) var<storage, read_write> corners: array<Corner>;
 
 fn point(v: u32) -> vec3<f32> {
     return vertices[v].p;
@@ -77,4 +78,29 @@ fn faces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     indices[to] = vec2(v, e);
     indices[to + 1u] = vec2(f, v);
     indices[to + 2u] = vec2(f, at.first_edge + edge(prev(h)));
+}
+
+fn place(to: u32, v: u32, face: u32, flags: u32) {
+    let p = vertices[v].p;
+    corners[to] = Corner(p.x, p.y, p.z, vertices[v].n, face, flags);
+}
+
+// The same two triangles with corners of their own, which carry more than points. Old vertex to edge point is half of an edge of the
+// level before; the diagonal is none.
+@compute @workgroup_size(256)
+fn quad_corners(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let h = element(id, groups);
+    if h >= at.end {
+        return;
+    }
+    let v = origin(h);
+    let f = at.first_face + face(h);
+    let normal = octahedral(quad(h));
+    let to = 6u * (h - at.first);
+    place(to, v, normal, 0x25u);
+    place(to + 1u, at.first_edge + edge(h), normal, 0x25u);
+    place(to + 2u, f, normal, 0x25u);
+    place(to + 3u, v, normal, 0x13u);
+    place(to + 4u, f, normal, 0x13u);
+    place(to + 5u, at.first_edge + edge(prev(h)), normal, 0x13u);
 }

@@ -88,7 +88,7 @@ impl Engine {
                     return;
                 }
                 _ => {
-                    let on_gpu = !(here || corners || all_here) && parts.is_one();
+                    let on_gpu = !(here || corners || all_here);
                     match on_gpu.then(|| self.on_gpu(&mesh, &plan, &parts)).flatten() {
                         Some(making) => Ok(making),
                         None => self
@@ -135,7 +135,7 @@ impl Engine {
         }
         let counts = predict(mesh, plan).ok()??.counts;
         let gpu = self.renderer.gpu();
-        let drawing = self.kernel.as_mut()?.draw(mesh, plan, gpu)?;
+        let drawing = self.kernel.as_mut()?.draw(mesh, plan, parts.of_faces(), gpu)?;
         let surface = Surface::reserve(gpu, &drawing.shape());
         drawing.run();
         let level = Refined::elsewhere(mesh.clone(), plan.level, counts);

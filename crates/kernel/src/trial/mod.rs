@@ -82,7 +82,7 @@ impl Trial {
         let entry = scheme(id).ok_or_else(|| format!("there is no scheme `{id}`"))?;
         let plan = Plan::new(entry, Boundary::default(), level);
         let (mesh, _) = Mesh::build(&self.soup, Weld::Off).map_err(|e| e.to_string())?;
-        let program = limn_compute::program(&mesh, &plan, limits(buffer, groups)).map_err(|e| e.to_string())?;
+        let program = limn_compute::program(&mesh, &plan, &[], limits(buffer, groups)).map_err(|e| e.to_string())?;
         Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
     }
 
