@@ -3,11 +3,12 @@
 
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
-import { readFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { describe, test } from "node:test";
 import { promisify } from "node:util";
-import { CLI, cards, cmd, content, difference, download, keep, own, picture, ready, scratch, state } from "./harness.mjs";
+import { PNG } from "pngjs";
+import { CLI, cards, cmd, content, difference, download, drop, keep, own, picture, ready, scratch, state } from "./harness.mjs";
 
 /** Schemes with kernels of their own, and whether they take triangles alone. */
 const SCHEMES = /** @type {const} */ ([
@@ -119,6 +120,38 @@ describe("refinement on the GPU", () => {
       assert.ok(good, `${JSON.stringify(found)} of ${hash}`);
       await Promise.all([gpu, cpu].map((page) => page.close()));
     }
+  });
+
+  test("textures and materials go along", { timeout: 120_000 }, async () => {
+    // A cube whose faces have a square of the picture each, and two materials.
+    const folder = await scratch();
+    const picture8 = new PNG({ width: 64, height: 64 });
+    for (let i = 0; i < 64 * 64; i += 1) picture8.data.set((((i >> 3) + (i >> 9)) & 1) === 0 ? [250, 240, 220, 255] : [30, 90, 200, 255], 4 * i);
+    const corner = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 1) & 1} ${(i >> 2) & 1}`);
+    const faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "2 4 8 6", "4 3 7 8", "3 1 5 7"].map((face, f) =>
+      `usemtl ${f % 2 ? "plain" : "checked"}\nf ${face.split(" ").map((v, k) => `${v}/${k + 1}`).join(" ")}`);
+    await writeFile(join(folder, "box.obj"), ["mtllib box.mtl", ...corner, "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", ...faces].join("\n"));
+    await writeFile(join(folder, "box.mtl"), "newmtl checked\nKd 1 1 1\nmap_Kd box.png\nnewmtl plain\nKd 0.9 0.3 0.2\n");
+    await writeFile(join(folder, "box.png"), PNG.sync.write(picture8));
+    const pictures = [];
+    for (const compute of /** @type {const} */ (["on", "off"])) {
+      const page = await open("", compute);
+      await drop(page, ["box.obj", "box.mtl", "box.png"].map((name) => join(folder, name)));
+      await ready(page, (state) => state.model.name === "box.obj");
+      await cmd(page, "level 4");
+      await ready(page, (state) => state.shown.level === 4);
+      assert.match((await said(page)) ?? "", compute === "on" ? / on the GPU / : / on the CPU /);
+      await cmd(page, "view camera=iso");
+      await page.waitForTimeout(300);
+      pictures.push(await picture(page));
+      await page.close();
+    }
+    const [ours, theirs] = /** @type {[PNG, PNG]} */ (pictures);
+    const found = difference(ours, theirs);
+    const good = found.inside === 0 && found.share <= 0.001;
+    if (!good) await Promise.all([keep("compute-textures-on", ours), keep("compute-textures-off", theirs)]);
+    assert.ok(good, JSON.stringify(found));
+    assert.ok(content(ours).detail > 0.005, `detail ${content(ours).detail}`);
   });
 
   test("gives the CPU what the GPU has no kernels for, and says so", async () => {
