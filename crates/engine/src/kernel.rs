@@ -46,6 +46,8 @@ extern "C" {
     fn progress(this: &Run) -> Result<f32, JsValue>;
     #[wasm_bindgen(method, catch)]
     fn finish(this: &Run) -> Result<Vec<u8>, JsValue>;
+    #[wasm_bindgen(method)]
+    fn large(this: &Run, i: usize) -> js_sys::Uint8Array;
     #[wasm_bindgen(method, catch)]
     fn free(this: &Run) -> Result<(), JsValue>;
 }
@@ -90,7 +92,7 @@ impl Remote {
     }
 }
 
-/// A run over there; none once it is finished.
+/// A run over there; there until it is dropped.
 struct Away {
     run: Option<Run>,
     mesh: Arc<Mesh>,
@@ -105,9 +107,11 @@ impl Work for Away {
         self.run.as_ref().and_then(|run| run.progress().ok()).unwrap_or(0.0)
     }
 
-    fn finish(mut self: Box<Self>) -> Result<Refined, String> {
-        let bytes = self.run.take().map_or(Ok(Vec::new()), |run| run.finish()).map_err(sentence)?;
-        Refined::unpack(&bytes, self.mesh.clone()).map_err(|e| e.to_string())
+    fn finish(self: Box<Self>) -> Result<Refined, String> {
+        let Some(run) = &self.run else { return Err(String::new()) };
+        let bytes = run.finish().map_err(sentence)?;
+        let level = Refined::unpack(&bytes, self.mesh.clone(), |i, out| run.large(i as usize).copy_to(out));
+        level.map_err(|e| e.to_string())
     }
 }
 

@@ -6,12 +6,12 @@
 //! ```text
 //!   engine ── mesh as bytes, once a mesh ──>  Kernel
 //!          ── plan as bytes ───────────────>  Kernel::start ──> Run: step, step, ...
-//!          <── level as bytes ──────────────  Run::finish
+//!          <── level as bytes ──────────────  Run::finish, and its arrays one by one: Run::large
 //!          ── plan as bytes ───────────────>  Kernel::draw ──> Drawing: what the GPU does, where it can
 //! ```
 //!
 //! A run is stepped by the engine as it steps its own jobs: in slices of a few milliseconds, between which it takes messages
-//! and draws. Dropping the run cancels it. Cost beside refining: one copy of the mesh and two of the level.
+//! and draws. Dropping the run cancels it. Cost beside refining: two copies of the mesh and one of the level.
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
 mod about;
@@ -25,7 +25,7 @@ pub use about::about;
 pub use drawing::Drawing;
 
 use limn_compute::Limits;
-use limn_mesh::{Job, Mesh, Plan};
+use limn_mesh::{Job, Mesh, Plan, Refined};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -61,7 +61,9 @@ impl Kernel {
     pub fn start(&self, plan: &[u8], budget: f64) -> Result<Run, String> {
         let mesh = self.mesh.clone().ok_or("there is no mesh to refine")?;
         let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
-        Job::new(mesh, plan, budget as u64).map(|job| Run(job.shaded())).map_err(|e| e.to_string())
+        Job::new(mesh, plan, budget as u64)
+            .map(|job| Run { job: Some(job.shaded()), level: None })
+            .map_err(|e| e.to_string())
     }
 
     /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension. None
@@ -85,22 +87,47 @@ pub(crate) fn limits(buffer: f64, groups: u32) -> Limits {
 /// A refinement under way. Dropping it cancels.
 #[derive(Debug)]
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
-pub struct Run(Job);
+pub struct Run {
+    job: Option<Job>,
+    level: Option<Refined>,
+}
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 impl Run {
     /// Works off about `rows` rows and says whether all is done: [`Job::step`].
     pub fn step(&mut self, rows: usize) -> bool {
-        self.0.step(rows)
+        self.job.as_mut().is_none_or(|job| job.step(rows))
     }
 
     /// How much is done, 0 to 1.
     pub fn progress(&self) -> f32 {
-        self.0.progress()
+        self.job.as_ref().map_or(1.0, Job::progress)
     }
 
-    /// The level as bytes, after working off what is left.
-    pub fn finish(self) -> Vec<u8> {
-        self.0.finish().pack()
+    /// What is small of the level as bytes, after working off what is left: [`Refined::pack`].
+    pub fn finish(&mut self) -> Vec<u8> {
+        if let Some(job) = self.job.take() {
+            self.level = Some(job.finish());
+        }
+        self.level.as_ref().map(Refined::pack).unwrap_or_default()
+    }
+}
+
+impl Run {
+    /// The level, once it is finished.
+    pub fn level(&self) -> Option<&Refined> {
+        self.level.as_ref()
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+#[wasm_bindgen]
+impl Run {
+    /// The bytes of a large array of the level, where they lie in this module's memory: to be copied before anything else is
+    /// called here, [`Refined::large`].
+    pub fn large(&self, i: usize) -> js_sys::Uint8Array {
+        let bytes = self.level.as_ref().map_or(&[][..], |level| level.large(i));
+        // SAFETY: the caller copies from the view at once, so memory neither moves nor changes while it is used.
+        unsafe { js_sys::Uint8Array::view(bytes) }
     }
 }

@@ -7,12 +7,12 @@
 //!   page's module                      module with every scheme
 //!   mesh.pack()  ── once a mesh ──>    Mesh::unpack
 //!   plan.pack()  ── each time   ──>    Plan::unpack, Job::new, step ...
-//!   Refined::unpack  <───────────      refined.pack()
+//!   Refined::unpack  <───────────      refined.pack(), and refined.large(i), each copied once
 //! ```
 //!
 //! The bytes are [`crate::pack`]'s. Unpacking checks lengths and numbers of kinds; that indices are in range it takes on
 //! trust. Every structure is taken apart by name, so a field that is added does not compile until it is sent as well.
-//! Cost: one copy each way.
+//! Cost: one copy each way, of a mesh two more.
 
 use crate::fairing::Fairing;
 use crate::mesh::{Mesh, UvChannel};
@@ -150,90 +150,129 @@ impl Plan {
     }
 }
 
+/// Where the arrays of a level stand in the list of those that pass by themselves: [`Refined::large`].
+mod large {
+    pub const POINTS: usize = 0;
+    pub const OFFSETS: usize = 1;
+    pub const CORNERS: usize = 2;
+    pub const UV_VALUES: usize = 3;
+    pub const UV_CORNERS: usize = 4;
+    pub const COLORS: usize = 5;
+    pub const NORMALS: usize = 6;
+    pub const SOURCE: usize = 7;
+    pub const COUNT: usize = 8;
+}
+
 impl Refined {
-    /// The level as bytes, without the mesh. Memory: what has been written is let go at once.
-    pub fn pack(self) -> Vec<u8> {
+    /// The level as bytes, without the mesh and the arrays that grow with it, whose lengths are there: they are to be taken by
+    /// themselves ([`Refined::large`]).
+    pub fn pack(&self) -> Vec<u8> {
         let Refined {
             level,
             counts,
             hidden,
-            points,
+            points: _,
             faces,
             uv,
-            colors,
+            colors: _,
             parent_ranges,
             vertex_parents,
             known_normals,
             kinds,
-            source,
+            source: _,
             split,
             mesh: _,
         } = self;
         let mut out = Writer::default();
-        out.number(level);
-        put_counts(&mut out, &counts);
-        out.array(&[hidden]);
-        out.array(&points);
-        drop(points);
-        let (degree, offsets, corners) = match faces {
-            Faces::Polygons { offsets, corners } => (0, offsets, corners),
-            Faces::Triangles(corners) => (3, Vec::new(), corners),
-            Faces::Quads(corners) => (4, Vec::new(), corners),
-        };
-        out.number(degree);
-        out.array(&offsets);
-        out.array(&corners);
-        drop((offsets, corners));
+        out.number(*level);
+        put_counts(&mut out, counts);
+        out.array(&[*hidden]);
+        out.number(match faces {
+            Faces::Polygons { .. } => 0,
+            Faces::Triangles(_) => 3,
+            Faces::Quads(_) => 4,
+        });
         out.number(uv.is_some().into());
-        if let Some(UvValues { values, corners }) = uv {
-            out.array(&values);
-            out.array(&corners);
-        }
-        out.array(&colors);
         out.number(parent_ranges.is_some().into());
         out.array(&parent_ranges.unwrap_or_default());
-        out.number(vertex_parents);
+        out.number(*vertex_parents);
         out.number(known_normals.is_some().into());
-        out.array(&known_normals.unwrap_or_default());
         out.bytes(&kinds.iter().map(|&kind| kind as u8).collect::<Vec<_>>());
-        out.array(&source);
-        put_split(&mut out, split);
+        put_split(&mut out, *split);
+        out.array(&std::array::from_fn::<u32, { large::COUNT }, _>(|i| self.large(i).len() as u32));
         out.finish()
     }
 
-    /// The level of `mesh` that these bytes are.
+    /// The bytes of an array that grows with the level; none for numbers that there are not.
+    pub fn large(&self, i: usize) -> &[u8] {
+        use bytemuck::cast_slice as bytes;
+        match (i, &self.faces, &self.uv) {
+            (large::POINTS, ..) => bytes(&self.points),
+            (large::OFFSETS, Faces::Polygons { offsets, .. }, _) => bytes(offsets),
+            (large::CORNERS, faces, _) => bytes(faces.corners()),
+            (large::UV_VALUES, _, Some(uv)) => bytes(&uv.values),
+            (large::UV_CORNERS, _, Some(uv)) => bytes(&uv.corners),
+            (large::COLORS, ..) => bytes(&self.colors),
+            (large::NORMALS, ..) => bytes(self.known_normals.as_deref().unwrap_or_default()),
+            (large::SOURCE, ..) => bytes(&self.source),
+            _ => &[],
+        }
+    }
+
+    /// The level of `mesh` that these bytes are; `fill` copies the bytes of a large array to where they belong. Cost: one copy.
     ///
     /// # Errors
     /// [`Damaged`].
-    pub fn unpack(bytes: &[u8], mesh: Arc<Mesh>) -> Read<Refined> {
+    pub fn unpack(bytes: &[u8], mesh: Arc<Mesh>, mut fill: impl FnMut(usize, &mut [u8])) -> Read<Refined> {
         let mut from = Reader::new(bytes);
+        let level = from.number()?;
+        let counts = counts(&mut from)?;
+        let [hidden] = from.exactly()?;
+        let degree = from.number()?;
+        let has_uv = from.number()? == 1;
+        let parent_ranges = from.option(Reader::exactly)?;
+        let vertex_parents = from.number()?;
+        let has_normals = from.number()? == 1;
+        let kind =
+            |&b: &u8| [FaceKind::Face, FaceKind::Edge, FaceKind::Vertex].get(usize::from(b)).copied().ok_or(Damaged);
+        let kinds = from.bytes()?.iter().map(kind).collect::<Read<_>>()?;
+        let split = split(&mut from)?;
+        let lengths: [u32; large::COUNT] = from.exactly()?;
+        let mut words = |i: usize| {
+            let mut words = vec![0u32; lengths[i] as usize / 4];
+            fill(i, bytemuck::cast_slice_mut(&mut words));
+            words
+        };
+        let [offsets, corners, uv_corners, source] =
+            [large::OFFSETS, large::CORNERS, large::UV_CORNERS, large::SOURCE].map(&mut words);
+        let mut triples = |i: usize| {
+            let mut triples = vec![[0.0f32; 3]; lengths[i] as usize / 12];
+            fill(i, bytemuck::cast_slice_mut(&mut triples));
+            triples
+        };
+        let [points, normals] = [large::POINTS, large::NORMALS].map(&mut triples);
+        let mut values = vec![[0.0f32; 2]; lengths[large::UV_VALUES] as usize / 8];
+        fill(large::UV_VALUES, bytemuck::cast_slice_mut(&mut values));
+        let mut colors = vec![[0.0f32; 4]; lengths[large::COLORS] as usize / 16];
+        fill(large::COLORS, bytemuck::cast_slice_mut(&mut colors));
         Ok(Refined {
-            level: from.number()?,
-            counts: counts(&mut from)?,
-            hidden: from.exactly::<u64, 1>()?[0],
-            points: from.array()?,
-            faces: match (from.number()?, from.array()?, from.array()?) {
-                (0, offsets, corners) => Faces::Polygons { offsets, corners },
-                (3, _, corners) => Faces::Triangles(corners),
-                (_, _, corners) => Faces::Quads(corners),
+            level,
+            counts,
+            hidden,
+            points,
+            faces: match degree {
+                0 => Faces::Polygons { offsets, corners },
+                3 => Faces::Triangles(corners),
+                _ => Faces::Quads(corners),
             },
-            uv: match from.number()? {
-                0 => None,
-                _ => Some(UvValues { values: from.array()?, corners: from.array()? }),
-            },
-            colors: from.array()?,
-            parent_ranges: from.option(Reader::exactly)?,
-            vertex_parents: from.number()?,
-            known_normals: from.option(Reader::array)?,
-            kinds: from
-                .bytes()?
-                .iter()
-                .map(|&b| {
-                    [FaceKind::Face, FaceKind::Edge, FaceKind::Vertex].get(usize::from(b)).copied().ok_or(Damaged)
-                })
-                .collect::<Read<_>>()?,
-            source: from.array()?,
-            split: split(&mut from)?,
+            uv: has_uv.then_some(UvValues { values, corners: uv_corners }),
+            colors,
+            parent_ranges,
+            vertex_parents,
+            known_normals: has_normals.then_some(normals),
+            kinds,
+            source,
+            split,
             mesh,
         })
     }
