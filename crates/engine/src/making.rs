@@ -77,6 +77,7 @@ pub struct Made {
     pub plan: Plan,
     /// Whether it has the corner layout for flat shading's sake.
     pub corners: bool,
+    /// Normals that did not come with the level.
     normals: Arc<Vec<[f32; 3]>>,
     /// The model's parts.
     pub parts: Arc<Parts>,
@@ -96,9 +97,13 @@ impl Made {
     /// Bytes on the CPU.
     pub fn bytes(&self) -> u64 {
         let r = &self.refined;
-        let floats = r.points.len() * 3 + self.normals.len() * 3 + r.colors.len() * 4;
+        let floats = r.points.len() * 3 + self.normals().len() * 3 + r.colors.len() * 4;
         let uv = r.uv.as_ref().map_or(0, |uv| uv.values.len() * 2 + uv.corners.len());
         4 * (floats + uv + r.faces.corners().len()) as u64
+    }
+
+    fn normals(&self) -> &[[f32; 3]] {
+        self.refined.known_normals.as_deref().unwrap_or(&self.normals)
     }
 
     /// Calls `with` with the surface as the renderer takes it.
@@ -112,7 +117,7 @@ impl Made {
             F::Quads(corners) => G::Quads(corners),
         };
         let part_of = |f: usize| self.parts.of_face.get(r.face_source(f as u32) as usize).copied().unwrap_or(0);
-        let mut data = SurfaceData::new(&r.points, &self.normals, faces);
+        let mut data = SurfaceData::new(&r.points, self.normals(), faces);
         data.parents = match (r.parent_ranges, r.level) {
             (Some(ranges), _) => Some(ranges),
             (None, 0) => None,
@@ -311,7 +316,7 @@ impl Making {
                 (next, 0)
             }
             Stage::Build(mut made, None) => {
-                if made.normals.is_empty() {
+                if made.normals().is_empty() {
                     made.normals = Arc::new(made.refined.normals());
                 }
                 let upload = made.data(|data| renderer.upload(data)).map_err(|e| e.to_string())?;

@@ -36,7 +36,6 @@ impl Scheme for Linear {
         params: &[],
     };
 
-    const COMMON: bool = false;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
     const RING: bool = true;
