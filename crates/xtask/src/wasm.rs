@@ -22,6 +22,11 @@ use wasm_bindgen_cli_support::Bindgen;
 /// What is compiled for speed where files are read; the engine only unpacks what that sends.
 const READS_FAST: &str = "profile.dist.package.limn-formats.opt-level=3";
 
+/// How the kernel's own crate is compiled. It is a few calls, but passes over the whole linked module run at the level of the
+/// crate that is linked: at z nothing turns the loops over lanes of `mesh/src/patch/grid.rs` into vector instructions, and
+/// patches take twice the time.
+const REFINES_FAST: &str = "profile.dist.package.limn-kernel.opt-level=3";
+
 /// One of the wasm modules.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Module {
@@ -154,9 +159,12 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     command.args(["rustc", "--package", module.crate_name(), "--lib", "--crate-type", "cdylib"]);
     command.args(module.features());
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
-    if module == Module::Files {
-        command.args(["--config", READS_FAST]);
-    }
+    let faster = match module {
+        Module::Files => Some(READS_FAST),
+        Module::Kernel | Module::Trial => Some(REFINES_FAST),
+        Module::WebGpu | Module::WebGl => None,
+    };
+    command.args(faster.iter().flat_map(|setting| ["--config", setting]));
     command.env("RUSTFLAGS", toolchain::wasm_flags());
     if !process::succeeds(&mut command)? {
         // The compiler has just told the terminal; the second run, of the failing crate alone, is for the page.
@@ -188,7 +196,8 @@ fn bind(module: Module, wasm: &Path, package: &Path, profile: Profile) -> Result
 /// When the newest file changed that a module is made of.
 pub fn newest_source() -> Result<SystemTime> {
     let mut newest = SystemTime::UNIX_EPOCH;
-    for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"] {
+    let how = ["crates/xtask/src/wasm.rs", "crates/xtask/src/toolchain.rs"];
+    for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"].into_iter().chain(how) {
         newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
     }
     for name in ["mesh", "compute", "formats", "document", "render", "engine", "files", "kernel"] {
