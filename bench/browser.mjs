@@ -4,9 +4,12 @@
 //   stdin "run limn-wasm 3" ─> page.evaluate ─> worker ─> "ok 0.0421" stdout
 //   inputs and results go over the page's own server: they are too large for lines
 //
+// A page knows only how much time passed. On Linux the system tells how long a thread computed, as for the native engines, so that
+// what else the machine does is not taken for the browser's: the worker's figure is read before a run and behind it.
+//
 // Variables: LIMN_SITE, the page; CHROME, a Chromium. The real graphics adapter is taken where there is one.
 
-import { readFile, writeFile } from "node:fs/promises";
+import { readFile, readdir, writeFile } from "node:fs/promises";
 import { createInterface } from "node:readline";
 import { launch, serveSite } from "../tests/browser/harness.mjs";
 
@@ -38,8 +41,11 @@ async function open(software) {
     };
     Reflect.set(window, "drive", {
       free,
-      prepare: async (/** @type {string} */ id, /** @type {string} */ scheme, /** @type {number} */ level) => {
+      open: async (/** @type {string} */ id) => {
         free(id);
+        threads.set(id, await host.Thread.open(id));
+      },
+      prepare: async (/** @type {string} */ id, /** @type {string} */ scheme, /** @type {number} */ level) => {
         const bytes = await (await fetch("/bench-input")).arrayBuffer();
         const [vertices = 0, faces = 0, corners = 0, creases = 0] = new Uint32Array(bytes, 0, 4);
         let at = 16;
@@ -51,7 +57,7 @@ async function open(software) {
           positions: take(Float32Array, 3 * vertices), counts: take(Uint32Array, faces), corners: take(Uint32Array, corners),
           ends: take(Uint32Array, 2 * creases), sharpness: take(Float32Array, creases),
         };
-        threads.set(id, await host.Thread.open(id));
+        // It runs until it is warm.
         await (await thread(id)).call("prepare", cage, scheme, level);
       },
       run: async (/** @type {string} */ id, /** @type {number} */ repeats) => (await thread(id)).call("run", repeats),
@@ -64,7 +70,9 @@ async function open(software) {
     });
     const engines = [];
     for (const engine of host.ENGINES) {
-      const first = await host.Thread.open(engine.id);
+      // Without an adapter there is no WebGPU.
+      const first = await host.Thread.open(engine.id).catch(() => null);
+      if (!first) continue;
       // Who cannot tell stores as the first does, which is Limn's module.
       engines.push({ ...engine, bandwidth: (await first.call("bandwidth")) ?? engines[0]?.bandwidth });
       first.close();
@@ -74,13 +82,59 @@ async function open(software) {
   return { browser, page, facts };
 }
 
+/** Where the system tells of the threads that workers are: none where it does not. */
+async function workers() {
+  /** @type {Set<string>} */
+  const found = new Set();
+  try {
+    const session = await browser.newBrowserCDPSession();
+    const { processInfo } = await session.send("SystemInfo.getProcessInfo");
+    await session.detach();
+    for (const { id } of processInfo.filter(({ type }) => type === "renderer")) {
+      for (const task of await readdir(`/proc/${id}/task`)) {
+        const folder = `/proc/${id}/task/${task}`;
+        // One that has just ended is no error.
+        const name = await readFile(`${folder}/comm`, "utf8").catch(() => "");
+        if (name.startsWith("DedicatedWorker")) found.add(folder);
+      }
+    }
+  } catch {
+    // Another system.
+  }
+  return found;
+}
+
+/** Seconds that a thread has computed since it began. @param {string} folder */
+const computed = async (folder) => Number((await readFile(`${folder}/schedstat`, "utf8")).split(" ")[0]) / 1e9;
+
+/** Opens an engine and gives the place of its thread, if it can be told. @param {string} id @returns {Promise<string | undefined>} */
+async function begin(id) {
+  await drive("free", id);
+  const before = await workers();
+  await drive("open", id);
+  const fresh = [...(await workers())].filter((folder) => !before.has(folder));
+  return fresh.length === 1 ? fresh[0] : undefined;
+}
+
 let { browser, page, facts } = await open(false);
 if (!facts.adapter) {
   await browser.close();
   ({ browser, page, facts } = await open(true));
 }
-for (const { id, name, excuse, bandwidth } of facts.engines) {
+/** Calls into the page. @param {string} call @param {...(string | number)} args @returns {Promise<any>} */
+const drive = (call, ...args) => page.evaluate(([call, args]) => Reflect.get(window, "drive")[call](...args), /** @type {const} */ ([call, args]));
+
+/** The threads of engines. @type {Map<string, string>} */
+const threads = new Map();
+const first = facts.engines[0]?.id ?? "";
+const clock = (await begin(first)) ? "thread" : "wall";
+await drive("free", first);
+
+for (const { id, name, on, shaded, excuse, bandwidth } of facts.engines) {
   console.log(`engine ${id} ${name}`);
+  // A GPU's time is no thread's.
+  console.log(`clock ${id} ${on === "webgpu" ? "wall" : clock}`);
+  if (shaded) console.log(`shaded ${id}`);
   if (excuse) console.log(`excuse ${id} ${excuse}`);
   console.log(`bandwidth ${id} ${bandwidth}`);
 }
@@ -89,15 +143,6 @@ console.log(`machine adapter ${facts.adapter || "none"}`);
 for (const note of facts.notes) console.log(`note ${note}`);
 console.log("ready");
 
-/** Calls into the page. @param {string} call @param {...(string | number)} args @returns {Promise<any>} */
-const drive = (call, ...args) => page.evaluate(([call, args]) => Reflect.get(window, "drive")[call](...args), /** @type {const} */ ([call, args]));
-/** Engines that have run since they got their input. @type {Set<string>} */
-const warm = new Set();
-/** @param {string} id */
-const warmed = async (id) => {
-  if (!warm.has(id)) await drive("run", id, 1);
-  warm.add(id);
-};
 
 /** What is answered behind `ok`. @param {string} command @param {string} id @param {string[]} words */
 async function answer(command, id, words) {
@@ -105,23 +150,25 @@ async function answer(command, id, words) {
     case "prepare": {
       const [scheme = "", level = "", path = ""] = words;
       input = await readFile(path);
-      warm.delete(id);
+      const thread = await begin(id);
+      if (!thread && clock === "thread") throw new Error("its thread is not found");
+      const onGpu = facts.engines.some((/** @type {any} */ engine) => engine.id === id && engine.on === "webgpu");
+      threads.set(id, onGpu ? "" : (thread ?? ""));
       await drive("prepare", id, scheme, Number(level));
       return "";
     }
     case "run": {
-      const seconds = await drive("run", id, Number(words[0]));
-      warm.add(id);
-      return seconds;
+      const thread = threads.get(id);
+      const before = thread ? await computed(thread) : 0;
+      const passed = await drive("run", id, Number(words[0]));
+      return thread ? (await computed(thread)) - before : passed;
     }
     case "surface":
-      await warmed(id);
       await drive("surface", id);
       await writeFile(words[0] ?? "", output);
       output = Buffer.alloc(0);
       return "";
     case "peak": {
-      await warmed(id);
       const bytes = await drive("peak", id);
       if (bytes === null) throw new Error("it cannot be told");
       return bytes;

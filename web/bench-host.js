@@ -6,19 +6,29 @@
 /** @typedef {import("./bench-worker.js").Surface} Surface */
 
 /**
- * Engines in the order of tables; `on` says what they compute with. three-subdivide is a library that does not ship: it is
+ * Engines in the order of tables; `on` says what they compute with, `shaded` whether they store normals beside points and corners. three-subdivide is a library that does not ship: it is
  * offered where the address says that whoever serves the page has put it beside. `excuse`: what it is known to do wrong.
- * @type {{ id: string, name: string, on: "wasm" | "js" | "webgpu", excuse?: string }[]}
+ * @type {{ id: string, name: string, on: "wasm" | "js" | "webgpu", shaded?: boolean, excuse?: string }[]}
  */
 // Its edge points are found again by hundredths of their coordinates, rounded at two widths: a few are not, and stay midpoints.
 export const ENGINES = [
   { id: "limn-wasm", name: "Limn, WebAssembly", on: "wasm" },
-  ...(navigator.gpu ? [/** @type {const} */ ({ id: "limn-webgpu", name: "Limn, WebGPU", on: "webgpu" })] : []),
+  { id: "limn-wasm-shaded", name: "Limn, WebAssembly + normals", on: "wasm", shaded: true },
+  ...(navigator.gpu ? [/** @type {const} */ ({ id: "limn-webgpu", name: "Limn, WebGPU + normals", on: "webgpu", shaded: true })] : []),
   ...(location.hash === "#peers" ? [/** @type {const} */ ({ id: "three-subdivide", name: "three-subdivide", on: "js", excuse: "leaves some edge points of fine meshes where they were" })] : []),
 ];
 
 /** What a reader of the figures has to know of the engines that are not there. */
 export const NOTES = ENGINES.some(({ on }) => on === "webgpu") ? [] : ["This browser has no WebGPU: no rows for it."];
+
+/** Compiled once for all threads, so that what a browser has compiled well stays so. @type {Promise<WebAssembly.Module> | null} */
+let compiled = null;
+function compile() {
+  compiled ??= fetch(new URL("../pkg/trial/limn_kernel_bg.wasm", import.meta.url)).then((answer) => answer.arrayBuffer()).then((bytes) => WebAssembly.compile(bytes));
+  // Another try may find the network there.
+  compiled.catch(() => (compiled = null));
+  return compiled;
+}
 
 /** One engine in a thread of its own. */
 export class Thread {
@@ -42,9 +52,10 @@ export class Thread {
 
   /** @param {string} id */
   static async open(id) {
+    const module = await compile();
     const thread = new Thread();
     try {
-      await thread.call("open", id);
+      await thread.call("open", id, module);
     } catch (error) {
       thread.close();
       throw error;

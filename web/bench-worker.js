@@ -2,7 +2,8 @@
 // The engines of the benchmark's browser half, in a thread of their own: one worker runs one engine on one input, so that its
 // memory begins small and goes with it.
 //
-//   open engine -> prepare input, scheme, level -> run n times -> seconds;  peak, size, surface
+//   open engine -> prepare input, scheme, level -> run n times -> seconds;  peak, stored, surface
+//                  and runs until it is compiled well
 //
 // A further engine is one entry of ENGINES; its `run` may be asynchronous.
 
@@ -12,13 +13,13 @@ import { Runner } from "./compute.js";
 /** @typedef {{ positions: Float32Array, counts: Uint32Array, corners: Uint32Array }} Surface */
 /**
  * One engine with its input. `prepare` throws where the engine has no such scheme; `run` goes from indexed faces to a level; `bandwidth` is
- * there where plain stores of the engine's own kind can be measured, in bytes a second.
+ * there where plain stores of the engine's own kind can be measured, in bytes a second, and `stored` the bytes of a level as Limn gives it out.
  * @typedef {{ prepare(cage: Cage, scheme: string, level: number): void | Promise<void>, run(): void | Promise<void>,
- *   surface(): Surface | Promise<Surface>, faces(): number, peak(): number | null, bandwidth?(): number | Promise<number> }} Engine
+ *   surface(): Surface | Promise<Surface>, faces(): number, stored?(): number, peak(): number | null, bandwidth?(): number | Promise<number> }} Engine
  */
 /**
  * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
- * @typedef {{ run(scheme: string, level: number, first?: number): void, clear(): void, faces(): number, positions(): Float32Array,
+ * @typedef {{ run(scheme: string, level: number, shaded: boolean): void, clear(): void, faces(): number, vertices(): number, normals(): number, corners(): number, positions(): Float32Array,
  *   draw(scheme: string, level: number, buffer: number, groups: number): import("./compute.js").Drawing | undefined,
  *   predicted(scheme: string, level: number): number, face_counts(): Uint32Array, face_corners(): Uint32Array, differs(p: Float32Array, n: Uint32Array, c: Uint32Array, tolerance: number): string }} Trial
  * @typedef {{ Trial: { cage(name: string, n: number): Trial, of(p: Float32Array, n: Uint32Array, c: Uint32Array, ends: Uint32Array, sharpness: Float32Array): Trial },
@@ -28,30 +29,39 @@ import { Runner } from "./compute.js";
 /** Bytes that plain stores are measured on. */
 const STORED = 1 << 26;
 
-/** @returns {Promise<{ kernel: Kernel, memory: WebAssembly.Memory }>} */
-async function load() {
-  const base = new URL("../pkg/trial/limn_kernel", import.meta.url).href;
-  const [module, wasm] = await Promise.all([import(`${base}.js`), fetch(`${base}_bg.wasm`)]);
-  const { memory } = await module.default({ module_or_path: wasm });
-  return { kernel: module, memory };
+/**
+ * A browser compiles twice: at once, and well while the first runs go on. An engine is warm when no run has been a tenth shorter
+ * than all before for so many milliseconds.
+ */
+const STEADY = 400;
+/** It is taken for warm after so many milliseconds in any case. */
+const PATIENCE = 3000;
+
+/** @param {WebAssembly.Module} compiled @returns {Promise<{ kernel: Kernel, memory: WebAssembly.Memory }>} */
+async function load(compiled) {
+  const kernel = await import(new URL("../pkg/trial/limn_kernel.js", import.meta.url).href);
+  const { memory } = await kernel.default({ module_or_path: compiled });
+  return { kernel, memory };
 }
 
-/** Limn on the CPU. */
+/** Limn on the CPU: points and corners, and unit normals if it is shaded. */
 class Wasm {
   #trial = /** @type {Trial | null} */ (null);
   #call = () => {};
   #before = 0;
   #grown = -1;
 
-  /** @param {Kernel} kernel @param {WebAssembly.Memory} memory */
-  constructor(kernel, memory) {
+  /** @param {Kernel} kernel @param {WebAssembly.Memory} memory @param {boolean} shaded */
+  constructor(kernel, memory, shaded) {
     this.kernel = kernel;
     this.memory = memory;
+    this.shaded = shaded;
   }
 
-  static async open() {
-    const { kernel, memory } = await load();
-    return new Wasm(kernel, memory);
+  /** @param {WebAssembly.Module} compiled @param {boolean} shaded */
+  static async open(compiled, shaded) {
+    const { kernel, memory } = await load(compiled);
+    return new Wasm(kernel, memory, shaded);
   }
 
   get trial() {
@@ -64,7 +74,7 @@ class Wasm {
     this.#trial = this.kernel.Trial.of(positions, counts, corners, ends, sharpness);
     this.#before = this.memory.buffer.byteLength;
     this.#grown = -1;
-    this.#call = () => this.trial.run(scheme, level);
+    this.#call = () => this.trial.run(scheme, level, this.shaded);
   }
 
   run() {
@@ -79,6 +89,11 @@ class Wasm {
 
   faces() {
     return this.trial.faces();
+  }
+
+  /** Points and normals have 12 bytes, corners 4. */
+  stored() {
+    return 12 * (this.trial.vertices() + this.trial.normals()) + 4 * this.trial.corners();
   }
 
   /** By how much the first run made the module's memory grow; a run that fits into what was there cannot be told. */
@@ -127,12 +142,13 @@ class Compute {
     this.runner = new Runner(device);
   }
 
-  static async open() {
+  /** @param {WebAssembly.Module} compiled */
+  static async open(compiled) {
     const adapter = await navigator.gpu?.requestAdapter();
     if (!adapter) throw new Error("this browser has no WebGPU adapter");
     const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
     const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
-    return new Compute((await load()).kernel, device);
+    return new Compute((await load(compiled)).kernel, device);
   }
 
   get trial() {
@@ -169,7 +185,7 @@ class Compute {
     const vertices = new Float32Array(await refiner.read(refiner.vertices, refiner.count * 16));
     const positions = new Float32Array(refiner.count * 3);
     for (let v = 0; v < refiner.count; v += 1) positions.set(vertices.subarray(4 * v, 4 * v + 3), 3 * v);
-    this.trial.run(...this.#wanted);
+    this.trial.run(...this.#wanted, false);
     const faces = { counts: this.trial.face_counts(), corners: this.trial.face_corners() };
     this.trial.clear();
     return { positions, ...faces };
@@ -279,8 +295,13 @@ function shortest(positions, corners) {
   return least;
 }
 
-/** @type {Record<string, () => Promise<Engine>>} */
-const ENGINES = { "limn-wasm": Wasm.open, "limn-webgpu": Compute.open, "three-subdivide": Three.open };
+/** @type {Record<string, (compiled: WebAssembly.Module) => Promise<Engine>>} */
+const ENGINES = {
+  "limn-wasm": (compiled) => Wasm.open(compiled, false),
+  "limn-wasm-shaded": (compiled) => Wasm.open(compiled, true),
+  "limn-webgpu": Compute.open,
+  "three-subdivide": Three.open,
+};
 
 /** @type {Engine | null} */
 let engine = null;
@@ -293,25 +314,39 @@ const wasm = () => {
   return engine;
 };
 
+/** Milliseconds of so many runs. @param {number} repeats */
+async function time(repeats) {
+  const start = performance.now();
+  for (let i = 0; i < repeats; i += 1) {
+    const running = present().run();
+    if (running) await running;
+  }
+  return performance.now() - start;
+}
+
 /** What can be asked. @type {Record<string, (...args: any[]) => unknown>} */
 const calls = {
-  open: async (/** @type {string} */ id) => {
+  open: async (/** @type {string} */ id, /** @type {WebAssembly.Module} */ compiled) => {
     const make = ENGINES[id];
     if (!make) throw new Error(`there is no engine ${id}`);
-    engine = await make();
+    engine = await make(compiled);
   },
-  prepare: (/** @type {Cage} */ cage, /** @type {string} */ scheme, /** @type {number} */ level) => present().prepare(cage, scheme, level),
+  prepare: async (/** @type {Cage} */ cage, /** @type {string} */ scheme, /** @type {number} */ level) => {
+    await present().prepare(cage, scheme, level);
+    const begun = performance.now();
+    let [best, since, now] = [Infinity, begun, begun];
+    do {
+      const took = await time(1);
+      now = performance.now();
+      if (took < 0.9 * best) [best, since] = [took, now];
+    } while (now < since + STEADY && now < begun + PATIENCE);
+  },
   /** Seconds of so many runs. */
-  run: async (/** @type {number} */ repeats) => {
-    const start = performance.now();
-    for (let i = 0; i < repeats; i += 1) {
-      const running = present().run();
-      if (running) await running;
-    }
-    return (performance.now() - start) / 1e3;
-  },
+  run: async (/** @type {number} */ repeats) => (await time(repeats)) / 1e3,
   surface: () => present().surface(),
   faces: () => present().faces(),
+  /** Bytes of what Limn stores here; null where the engine is another. */
+  stored: () => present().stored?.() ?? null,
   peak: () => present().peak(),
   cage: (/** @type {string} */ name, /** @type {number} */ n) => wasm().cage(name, n),
   differs: (/** @type {Surface} */ other, /** @type {number} */ tolerance) => wasm().differs(other, tolerance),

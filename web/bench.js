@@ -2,7 +2,7 @@
 // `?bench`: the browser half of the benchmark on a visitor's own device. Nothing of it is loaded by any other visit, and the
 // engine that draws is not started.
 //
-//   cage ── every engine in a thread of its own ── results compared ── rounds in turn ── medians ──> table, JSON
+//   cage ── every engine in a thread of its own, warm ── results compared ── rounds in turn ── medians ──> table, JSON
 
 import { ENGINES, NOTES, Thread, machine } from "./bench-host.js";
 import { el, full, megabytes, setText, styles } from "./dom.js";
@@ -11,6 +11,7 @@ import { el, full, megabytes, setText, styles } from "./dom.js";
 /**
  * A row of `cargo xtask bench --json`; bench/src/report.rs says what each is.
  * @typedef {{ series: string, engine: string, name: string, scheme: string, mesh: string, cage_faces: number, level: number, faces: number,
+ *   stores: "points, corners" | "points, normals, corners", output_bytes: number,
  *   median_ms: number, best_ms: number, samples: number, ns_per_face: number, times_limn: number, peak_bytes: number | null,
  *   measured_bandwidth: number, limit_ns_per_face: number, clock: "wall", other_rule: false, machine: string }} Row
  */
@@ -42,6 +43,21 @@ const figures = (x) => (x >= 100 ? full(Math.round(x)) : x.toPrecision(x >= 1 ? 
 /** @param {number[]} times */
 const median = (times) => times.toSorted((a, b) => a - b)[times.length >> 1] ?? 0;
 
+/** Whether others than Limn on the CPU are there, whose times are compared with its own for what stores the same. */
+const PEERS = ENGINES.some(({ on }) => on !== "wasm");
+
+/** How many runs make a sample long enough for the clock, and the seconds that were spent to find out. @param {Thread} thread */
+async function fill(thread) {
+  let [repeats, spent] = [1, 0];
+  for (;;) {
+    const took = await thread.call("run", repeats);
+    spent += took;
+    if (took > SAMPLE / 2 || repeats > 1e5) return /** @type {const} */ ([repeats, spent]);
+    // A short one is known by tenths of a millisecond only.
+    repeats = Math.ceil(repeats * Math.min(16, SAMPLE / Math.max(took, 1e-9)));
+  }
+}
+
 class Bench {
   #progress = el("p", { id: "bench-progress", role: "status" });
   #button = el("button", { id: "bench-run", className: "main", type: "button", onclick: () => this.#press() }, "Run");
@@ -51,6 +67,7 @@ class Bench {
   /** @type {Row[]} */ #rows = [];
   #running = false;
   #stop = false;
+  /** Those that can be run here. */ #engines = ENGINES;
   /** What is run now, to be ended by Stop. @type {Set<Thread>} */ #threads = new Set();
   #device = "";
   /** Bytes a second of plain stores, by engine; an engine that cannot tell has those of Limn's module. @type {Map<string, number>} */
@@ -63,7 +80,7 @@ class Bench {
     // The page's other parts stay where their scripts look for them; styles hide them.
     document.body.append(el("section", { id: "bench", "aria-label": "Benchmark" },
       el("h1", {}, "How fast is Limn here?"),
-      el("p", { className: "lead" }, "Limn's kernel on this device, on one thread: from a cage's indexed faces to all points and faces of a level. It takes "
+      el("p", { className: "lead" }, "Limn's kernel on this device, on one thread: from a cage's indexed faces to all points and faces of a level, and once more with normals. It takes "
         + "less than a minute, and nothing leaves this page."),
       el("p", { className: "acts" }, this.#button, this.#copy, el("a", { href: "./" }, "Open Limn")),
       this.#progress, this.#facts, this.#body,
@@ -108,9 +125,19 @@ class Bench {
     let said = "";
     try {
       setText(this.#progress, "What plain stores reach");
-      for (const { id } of ENGINES) {
-        const thread = await this.#open(id);
-        this.#bandwidths.set(id, (await thread.call("bandwidth")) ?? this.#stores());
+      this.#engines = [];
+      for (const engine of ENGINES) {
+        /** @type {Thread} */
+        let thread;
+        try {
+          thread = await this.#open(engine.id);
+        } catch (error) {
+          // Without an adapter there is no WebGPU; Limn's module has to be there.
+          if (this.#stop || engine.on === "wasm") throw error;
+          continue;
+        }
+        this.#engines.push(engine);
+        this.#bandwidths.set(engine.id, (await thread.call("bandwidth")) ?? this.#stores());
         this.#close(thread);
       }
       const keeper = await this.#open("limn-wasm");
@@ -137,11 +164,11 @@ class Bench {
 
   /** @param {typeof JOBS[0]} job @param {Cage} cage */
   async #job([scheme, title, , , mesh, level], cage) {
-    /** @type {{ id: string, name: string, thread: Thread, times: number[], repeats: number, spent: number }[]} */
+    /** @type {{ id: string, name: string, shaded: boolean, thread: Thread, times: number[], repeats: number, spent: number }[]} */
     const present = [];
     /** @type {string[]} */
     const differ = [];
-    for (const { id, name } of ENGINES) {
+    for (const { id, name, shaded = false } of this.#engines) {
       const thread = await this.#open(id);
       try {
         await thread.call("prepare", cage, scheme, level);
@@ -151,7 +178,7 @@ class Bench {
         this.#close(thread);
         continue;
       }
-      const first = await thread.call("run", 1);
+      const [repeats, spent] = await fill(thread);
       // The first is Limn on the CPU: what the others are held against.
       const [limn] = present;
       const why = limn ? await limn.thread.call("differs", await thread.call("surface"), TOLERANCE) : "";
@@ -160,7 +187,7 @@ class Bench {
         this.#close(thread);
         continue;
       }
-      present.push({ id, name, thread, times: [], repeats: Math.ceil(SAMPLE / Math.max(first, 1e-6)), spent: first });
+      present.push({ id, name, shaded, thread, times: [], repeats, spent });
     }
     for (let round = 0; round < ROUNDS; round += 1) {
       for (const engine of present) {
@@ -172,21 +199,21 @@ class Bench {
     }
     /** @type {Row[]} */
     const rows = [];
-    let stored = 0;
-    for (const { id, name, thread, times } of present) {
+    /** What Limn stores, without normals and with them. */
+    const stored = [0, 0];
+    for (const { id, name, shaded, thread, times } of present) {
       const faces = await thread.call("faces");
       const bandwidth = this.#bandwidths.get(id) ?? this.#stores();
       const middle = median(times);
-      if (!stored) {
-        // Points have 12 bytes, corners 4.
-        const { positions, corners } = await thread.call("surface");
-        stored = 4 * (positions.length + corners.length);
-      }
+      const output = stored[Number(shaded)] || (await thread.call("stored"));
+      stored[Number(shaded)] = output;
+      const like = present.find((other) => other.shaded === shaded);
       rows.push({
         series: "table", engine: id, name, scheme, mesh, cage_faces: cage.counts.length, level, faces,
+        stores: shaded ? "points, normals, corners" : "points, corners", output_bytes: output,
         median_ms: middle * 1e3, best_ms: Math.min(...times) * 1e3, samples: times.length, ns_per_face: (middle * 1e9) / faces,
-        times_limn: middle / median(present[0]?.times ?? []), peak_bytes: await thread.call("peak"), measured_bandwidth: bandwidth,
-        limit_ns_per_face: (stored * 1e9) / bandwidth / faces, clock: "wall", other_rule: false, machine: this.#device,
+        times_limn: middle / median(like?.times ?? []), peak_bytes: await thread.call("peak"), measured_bandwidth: bandwidth,
+        limit_ns_per_face: (output * 1e9) / bandwidth / faces, clock: "wall", other_rule: false, machine: this.#device,
       });
       this.#close(thread);
     }
@@ -204,15 +231,13 @@ class Bench {
   #show(title, rows, differ) {
     const [first] = rows;
     if (!first) return;
-    const many = ENGINES.length > 1;
     const cells = (/** @type {Row} */ row) => [
       figures(row.median_ms), figures(row.ns_per_face), figures(row.limit_ns_per_face), row.peak_bytes === null ? "–" : megabytes(row.peak_bytes),
-      ...(many ? [`×${figures(row.times_limn)}`] : []),
+      ...(PEERS ? [`×${figures(row.times_limn)}`] : []),
     ].map((text) => el("td", {}, text));
-    const what = el("th", { scope: "row", colSpan: many ? 6 : 1 }, title, el("small", {}, `${first.mesh}, level ${first.level}: ${full(first.faces)} faces`));
-    const lines = many
-      ? [el("tr", { className: "what" }, what), ...rows.map((row) => el("tr", {}, el("th", { scope: "row", className: "engine" }, row.name), ...cells(row)))]
-      : rows.map((row) => el("tr", {}, what, ...cells(row)));
+    const what = el("th", { scope: "row", colSpan: PEERS ? 6 : 5 }, title, el("small", {}, `${first.mesh}, level ${first.level}: ${full(first.faces)} faces`));
+    const engine = (/** @type {Row} */ row) => el("th", { scope: "row", className: "engine" }, PEERS ? row.name : row.stores);
+    const lines = [el("tr", { className: "what" }, what), ...rows.map((row) => el("tr", {}, engine(row), ...cells(row)))];
     const said = differ.map((text) => el("tr", {}, el("td", { className: "differ", colSpan: 6 }, text)));
     this.#body.append(el("tbody", {}, ...lines, ...said));
     this.#body.hidden = false;
@@ -235,7 +260,7 @@ class Bench {
 }
 
 function head() {
-  const names = ["", "ms", "ns a face", "limit", "memory", ...(ENGINES.length > 1 ? ["ratio"] : [])];
+  const names = ["", "ms", "ns a face", "limit", "memory", ...(PEERS ? ["ratio"] : [])];
   return el("thead", {}, el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
 }
 

@@ -11,7 +11,8 @@
 //!   report    text, or --json: an object a row; page.rs: plots           (docs/benchmarks)
 //! ```
 //!
-//! Figures are medians; `best` is the shortest run: where the two are far apart the machine was busy. `limit` is what storing
+//! What a row stores is the same for all but those called "+ normals", which have unit normals as well, and whose ratios are among
+//! themselves. `beyond` is what a run holds at most beyond its input and its output, in bytes a face. Figures are medians; `best` is the shortest run: where the two are far apart the machine was busy. `limit` is what storing
 //! the same points and corners takes at the bandwidth of plain stores measured at the start. Before anything is timed every
 //! engine's points and faces are held against Limn's; one that differs has no figure, and the run fails at its end. Where a
 //! library is known to have another rule under the same name a star says so, and counts alone are compared.

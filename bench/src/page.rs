@@ -25,7 +25,9 @@ pub fn page(report: &Report) -> String {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Limn: benchmarks</title>\n";
     _ = write!(out, "<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>How fast Limn subdivides</h1>\n");
     out += "<p class=\"lead\">From indexed faces to the points and faces of a level, on one thread, beside other libraries that do the \
-            same work. Shorter is better; every axis is logarithmic; the dashed line is what storing the result takes.</p>\n";
+            same work. Rows called “+ normals” are Limn once more, with the unit normals that a picture needs: no other library here makes \
+            any, so they are compared with each other alone. Shorter is better; every axis is logarithmic; the dashed line is what \
+            storing points and corners takes.</p>\n";
     out += &facts(report);
     out += &legend(&engines);
     out += "<h2>Nanoseconds a face</h2>\n";
@@ -111,8 +113,14 @@ fn facts(report: &Report) -> String {
         "All engines take turns, round by round, on the same inputs; figures are medians.",
         "Before an engine's time counts its result is held against Limn's: numbers of vertices and faces, and all positions within \
          1e-5 whatever their numbering (above two million faces: their means and squares).",
-        "Native times are what the thread computed, a browser's are time that passed.",
-        "Memory is the most that one run holds beyond its input; in WebAssembly, by how much its memory grew.",
+        if report.rows.iter().any(|row| row.clock == "wall") {
+            "Native times are what the thread computed, a browser's are time that passed."
+        } else {
+            "Times are what the thread computed, in the browser too."
+        },
+        "In a browser engines run until they are compiled well before they are timed.",
+        "Memory is the most that one run holds beyond its input; in WebAssembly, by how much its memory grew. “Beyond” is what of that is \
+         not output: 12 bytes a point (and as many a normal), 4 a corner.",
     ];
     let quick = "This was a quick run: fewer rows, fewer rounds, curves up to five million faces.";
     let took = format!("It took {} s.", report.seconds);
@@ -179,28 +187,39 @@ fn all(report: &Report) -> String {
         "Level",
         "Faces",
         "Engine",
+        "Stores",
         "Median ms",
         "ns a face",
         "Limit",
         "Ratio",
         "Peak MB",
         "B a face",
+        "Beyond",
     ];
     let heads: String = heads.iter().map(|head| format!("<th>{head}</th>")).collect();
     _ = write!(out, "<thead><tr>{heads}</tr></thead><tbody>");
     for row in &report.rows {
-        let [peak, each] = match row.peak_bytes {
-            Some(bytes) => [figures(bytes as f64 / 1e6), figures(bytes as f64 / row.faces as f64)],
-            None => ["–", "–"].map(str::to_owned),
-        };
+        let [each, beyond] = row.bytes_per_face();
+        let peak = row.peak_bytes.map(|bytes| bytes as f64 / 1e6);
+        let [peak, each, beyond] = [peak, each, beyond].map(|x| x.map_or("–".to_owned(), figures));
         let ratio = row.times_limn.map_or("–".to_owned(), figures);
         let name = row.name.as_str();
         let words = [&row.scheme, &row.mesh].map(|word| format!("<td>{}</td>", escaped(word))).concat();
-        let cells =
-            [figures(row.median_ms), figures(row.ns_per_face), figures(row.limit_ns_per_face), ratio, peak, each];
+        let cells = [
+            figures(row.median_ms),
+            figures(row.ns_per_face),
+            figures(row.limit_ns_per_face),
+            ratio,
+            peak,
+            each,
+            beyond,
+        ];
         let cells = cells.map(|cell| format!("<td>{cell}</td>")).concat();
-        let (level, faces, name) = (row.level, grouped(row.faces), escaped(name));
-        _ = write!(out, "<tr>{words}<td>{level}</td><td>{faces}</td><td class=\"word\">{name}</td>{cells}</tr>");
+        let (level, faces, name, stores) = (row.level, grouped(row.faces), escaped(name), &row.stores);
+        _ = write!(
+            out,
+            "<tr>{words}<td>{level}</td><td>{faces}</td><td class=\"word\">{name}</td><td class=\"word\">{stores}</td>{cells}</tr>"
+        );
     }
     out + "</tbody></table></div></details>\n"
 }

@@ -9,6 +9,16 @@ use crate::machine::Machine;
 use limn_mesh::grouped;
 use serde::{Deserialize, Serialize};
 
+/// What a row stores, in the words that its field has: what every library makes.
+pub const WITHOUT: &str = "points, corners";
+/// And with the unit normals that a picture needs: Limn alone.
+pub const WITH_NORMALS: &str = "points, normals, corners";
+
+/// What rows stored before there was a word for it.
+fn without() -> String {
+    WITHOUT.to_owned()
+}
+
 /// One engine on one job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -28,6 +38,12 @@ pub struct Row {
     pub level: u32,
     /// How many faces the level has.
     pub faces: u64,
+    /// What is stored: `points, corners` or `points, normals, corners`.
+    #[serde(default = "without")]
+    pub stores: String,
+    /// Bytes of that: 12 a point and a normal, 4 a corner.
+    #[serde(default)]
+    pub output_bytes: u64,
     /// The middle of all runs.
     pub median_ms: f64,
     /// The shortest.
@@ -36,13 +52,13 @@ pub struct Row {
     pub samples: usize,
     /// The median by the level's faces.
     pub ns_per_face: f64,
-    /// How many times Limn's time it is; none if Limn was not run.
+    /// How many times Limn's time for storing the same it is; none if Limn was not run.
     pub times_limn: Option<f64>,
     /// The most that a run holds beyond its input; none where that cannot be told.
     pub peak_bytes: Option<u64>,
     /// Bytes a second that plain stores reached where the engine runs, in the same run of the benchmark.
     pub measured_bandwidth: f64,
-    /// What storing the level's points and corners takes at that.
+    /// What plain stores of the output take at that.
     pub limit_ns_per_face: f64,
     /// `thread`: time that the thread computed. `wall`: time that passed.
     pub clock: String,
@@ -71,6 +87,17 @@ pub struct Report {
     pub rows: Vec<Row>,
 }
 
+impl Row {
+    /// Bytes a face that a run holds at most beyond its input, and of that beyond its output: none where the peak is not known, or less than
+    /// the output, as where a module's memory had room left.
+    pub fn bytes_per_face(&self) -> [Option<f64>; 2] {
+        let each = |bytes: u64| bytes as f64 / self.faces as f64;
+        let over =
+            self.peak_bytes.filter(|_| self.output_bytes > 0).and_then(|peak| peak.checked_sub(self.output_bytes));
+        [self.peak_bytes.map(each), over.map(each)]
+    }
+}
+
 impl Report {
     /// Rows of a series.
     pub fn series<'a>(&'a self, series: &'a str) -> impl Iterator<Item = &'a Row> {
@@ -93,8 +120,8 @@ pub fn heading(row: &Row) -> String {
 /// What stands above all.
 pub fn columns() -> String {
     format!(
-        "  {:<20}{:>11}{:>11}{:>11}{:>9}{:>11}{:>9}",
-        "engine", "median ms", "best ms", "ns a face", "ratio", "peak MB", "B a face"
+        "  {:<28}{:>11}{:>11}{:>11}{:>9}{:>11}{:>10}{:>8}",
+        "engine", "median ms", "best ms", "ns a face", "ratio", "peak MB", "B a face", "beyond"
     )
 }
 
@@ -102,17 +129,14 @@ pub fn columns() -> String {
 pub fn line(row: &Row) -> String {
     let ratio = row.times_limn.map_or(String::new(), |x| format!("x{}", figures(x)));
     let star = if row.other_rule { "*" } else { " " };
-    let bytes = row.peak_bytes.map_or([String::from("-"), String::from("-")], |bytes| {
-        [format!("{:.1}", bytes as f64 / 1e6), format!("{:.0}", bytes as f64 / row.faces as f64)]
-    });
+    let peak = row.peak_bytes.map_or("-".to_owned(), |bytes| format!("{:.1}", bytes as f64 / 1e6));
+    let [all, beyond] = row.bytes_per_face().map(|bytes| bytes.map_or("-".to_owned(), |bytes| format!("{bytes:.0}")));
     format!(
-        "  {:<20}{:>11}{:>11}{:>11}{ratio:>8}{star}{:>11}{:>9}",
+        "  {:<28}{:>11}{:>11}{:>11}{ratio:>8}{star}{peak:>11}{all:>10}{beyond:>8}",
         row.name,
         figures(row.median_ms),
         figures(row.best_ms),
         figures(row.ns_per_face),
-        bytes[0],
-        bytes[1]
     )
 }
 
@@ -141,6 +165,8 @@ pub mod tests {
             cage_faces: faces / 16,
             level: 2,
             faces,
+            stores: without(),
+            output_bytes: 18 * faces,
             median_ms: ms,
             best_ms: ms * 0.9,
             samples: 5,
@@ -166,6 +192,8 @@ pub mod tests {
             ("scheme", false),
             ("level", true),
             ("faces", true),
+            ("stores", false),
+            ("output_bytes", true),
             ("median_ms", true),
             ("ns_per_face", true),
             ("peak_bytes", true),
@@ -182,7 +210,10 @@ pub mod tests {
     #[test]
     fn a_line_has_its_figures() {
         let text = line(&row("peer", "table", 2_000_000, 123.4));
-        assert_eq!(text.split_whitespace().collect::<Vec<_>>(), ["PEER", "123", "111", "61.7", "x2.00", "60.0", "30"]);
+        assert_eq!(
+            text.split_whitespace().collect::<Vec<_>>(),
+            ["PEER", "123", "111", "61.7", "x2.00", "60.0", "30", "12"]
+        );
         assert_eq!(["1234", "12.3", "1.23", "0.123"], [1234.4, 12.34, 1.234, 0.1234].map(figures));
     }
 }

@@ -7,13 +7,13 @@
 //!   ...       medians; then one run each with memory counted
 //! ```
 //!
-//! An engine that would take too long or too much memory, by what it took for fewer faces, is left out, and a note says so. A
+//! Times are compared among those that store the same: Limn with normals has a row of its own. An engine that would take too long or too much memory, by what it took for fewer faces, is left out, and a note says so. A
 //! run that is too short for a clock is repeated. Large levels are compared by counts and moments alone: the same engines
 //! have been compared point by point on smaller ones.
 
-use crate::engines::{Absent, Differs, Engine, GENERAL, Job, LIMN, Run, refined};
+use crate::engines::{Absent, Differs, Engine, GENERAL, Job, LIMN, Run, SHADED, refined};
 use crate::machine::Machine;
-use crate::report::{Report, Row};
+use crate::report::{Report, Row, WITH_NORMALS, WITHOUT};
 use crate::{clock, memory};
 use limn_kernel::trial::same::{Sorted, Surface};
 use limn_kernel::trial::surface;
@@ -24,8 +24,6 @@ use std::collections::{BTreeMap, BTreeSet};
 const TOLERANCE: f64 = 1e-5;
 /// Up to so many faces every point is compared.
 const COMPARED: usize = 2_000_000;
-/// A sample lasts at least so many seconds; ten times as many in a browser, whose clock is coarse.
-const SAMPLE: f64 = 0.002;
 /// An engine without a figure for the scheme is tried on fewer faces first where there are more than this.
 const TRIED: usize = 100_000;
 
@@ -85,9 +83,9 @@ impl Bench {
         }
     }
 
-    /// Names of the engines in their order.
+    /// Names of the engines that have curves, in their order.
     pub fn names(&self) -> Vec<(String, String)> {
-        self.engines.iter().map(|e| (e.id().to_owned(), e.name().to_owned())).collect()
+        self.engines.iter().filter(|e| !is_twin(e.id())).map(|e| (e.id().to_owned(), e.name().to_owned())).collect()
     }
 
     /// Runs a job on every engine that takes it; the rows, Limn's first, are kept in the report as well.
@@ -97,7 +95,8 @@ impl Bench {
     pub fn measure(&mut self, series: &str, mesh: &str, job: &Job<'_>) -> Result<Vec<Row>, String> {
         let ours = refined(job, None)?;
         let faces = ours.faces.count();
-        let stored = (ours.points.len() * 12 + ours.faces.corners().len() * 4) as f64;
+        let plain = ours.points.len() as u64 * 12 + ours.faces.corners().len() as u64 * 4;
+        let bent = plain + ours.points.len() as u64 * 12;
         let reference = Reference::new(job, surface(&ours));
         drop(ours);
         self.try_strangers(job, faces);
@@ -108,6 +107,10 @@ impl Bench {
         let lost = &mut self.lost;
         let mut entries: Vec<Entry<'_>> = Vec::new();
         for engine in &mut self.engines {
+            if is_twin(engine.id()) && series != "table" {
+                continue;
+            }
+            let (stores, output_bytes) = if engine.shaded() { (WITH_NORMALS, bent) } else { (WITHOUT, plain) };
             let (id, name) = (engine.id().to_owned(), engine.name().to_owned());
             let key = (id.clone(), job.id.to_owned());
             let (seconds, bytes) = self.costs.get(&key).copied().unwrap_or_default();
@@ -127,7 +130,7 @@ impl Bench {
                 continue;
             }
             let differs = engine.differs(job.id);
-            let clock = engine.clock().to_owned();
+            let (clock, sample) = (engine.clock().to_owned(), engine.sample());
             let excuse = engine.excuse().map(str::to_owned);
             let bandwidth = engine.bandwidth().unwrap_or(self.report.measured_bandwidth);
             let mut run = match engine.prepare(job) {
@@ -138,8 +141,8 @@ impl Bench {
                     continue;
                 }
             };
-            let first = match run.time(1) {
-                Ok(first) => first,
+            let (repeats, first) = match fill(&mut *run, sample) {
+                Ok(found) => found,
                 Err(why) => {
                     sentences.push(format!("{name} fails on {}, {mesh}, level {}: {why}.", job.id, job.level));
                     continue;
@@ -172,6 +175,8 @@ impl Bench {
                 cage_faces: job.counts.len() as u64,
                 level: job.level,
                 faces: faces as u64,
+                stores: stores.to_owned(),
+                output_bytes,
                 median_ms: 0.0,
                 best_ms: 0.0,
                 samples: 0,
@@ -179,13 +184,11 @@ impl Bench {
                 times_limn: None,
                 peak_bytes: None,
                 measured_bandwidth: bandwidth,
-                limit_ns_per_face: stored * 1e9 / bandwidth / faces as f64,
+                limit_ns_per_face: output_bytes as f64 * 1e9 / bandwidth / faces as f64,
                 clock,
                 other_rule: matches!(differs, Some(Differs::Rule(_))),
                 machine: machine.clone(),
             };
-            let sample = if row.clock == "wall" { 10.0 * SAMPLE } else { SAMPLE };
-            let repeats = (sample / first.max(1e-7)).ceil().clamp(1.0, 10_000.0) as u32;
             entries.push(Entry { row, run, repeats, times: Vec::new() });
         }
         drop(reference);
@@ -218,9 +221,11 @@ impl Bench {
                 rows.push(entry.row);
             }
         }
-        let limn = rows.iter().find(|row| row.engine == LIMN).map(|row| row.median_ms);
+        let of = |id: &str| rows.iter().find(|row| row.engine == id).map(|row| row.median_ms);
+        let (limn, with_normals) = (of(LIMN), of(SHADED));
         for row in &mut rows {
-            row.times_limn = limn.map(|limn| row.median_ms / limn);
+            let like = if row.stores == WITHOUT { limn } else { with_normals };
+            row.times_limn = like.map(|like| row.median_ms / like);
         }
         self.report.notes.extend(sentences);
         self.report.rows.extend(rows.iter().cloned());
@@ -258,6 +263,25 @@ impl Bench {
                 self.costs.insert(key, (time / fewer, bytes / fewer));
             }
         }
+    }
+}
+
+/// Whether this is another engine once more, with normals: it has rows in the table and no curves.
+fn is_twin(id: &str) -> bool {
+    id.ends_with("-shaded")
+}
+
+/// How many runs make a sample that is long enough for the clock, and about how many seconds one takes.
+fn fill(run: &mut dyn Run, sample: f64) -> Result<(u32, f64), String> {
+    let mut repeats = 1;
+    loop {
+        let took = run.time(repeats)?;
+        if took > sample / 2.0 || repeats >= 10_000 {
+            return Ok((repeats, took / f64::from(repeats)));
+        }
+        // A short one may be known by one figure only, or none.
+        let more = (sample / took.max(1e-9)).clamp(1.0, 16.0);
+        repeats = (f64::from(repeats) * more).ceil().min(10_000.0) as u32;
     }
 }
 

@@ -1,7 +1,7 @@
 //! The table: which schemes on which cages to which levels, what each may take, and what creases may add.
 
 use crate::clock::{median, seconds};
-use crate::engines::{Job, LIMN, refined};
+use crate::engines::{Job, LIMN, SHADED, refined};
 use crate::report::{self, Row};
 use crate::rounds::Bench;
 use limn_kernel::trial::cages::{self, cage};
@@ -10,6 +10,8 @@ use std::hint::black_box;
 
 /// By how many per cent creases may add to a face's time.
 const MORE_FOR_CREASES: f64 = 30.0;
+/// Bytes a face that Limn may hold at most beyond its input and its output.
+const MOST_BEYOND: f64 = 30.0;
 /// What a face may take, in ns: by scheme.
 const BUDGETS: [(&str, f64); 7] = [
     ("catmull-clark", 28.0),
@@ -134,6 +136,13 @@ impl Table<'_> {
         let budget = BUDGETS.iter().find(|b| b.0 == id).map(|b| b.1);
         if budget.is_some_and(|budget| ns > budget) {
             self.missed.push(format!("{id} on {name}: {ns:.1} ns"));
+        }
+        for row in rows.iter().filter(|row| [LIMN, SHADED].contains(&row.engine.as_str())) {
+            if let Some(beyond) = row.bytes_per_face()[1].filter(|beyond| *beyond > MOST_BEYOND) {
+                let name = &row.name;
+                self.missed
+                    .push(format!("{id} on {mesh}, {name}: {beyond:.0} B a face beyond its output", mesh = row.mesh));
+            }
         }
         self.say(&format!("\n{}", report::heading(limn)));
         for row in &rows {

@@ -27,12 +27,20 @@ describe("the benchmark's page", () => {
     await page.waitForFunction(() => document.querySelector("#bench-progress")?.textContent === "Copied.");
     const { rows, machine, measured_bandwidth: bandwidth } = JSON.parse(await page.evaluate(() => navigator.clipboard.readText()));
     assert.ok(machine && bandwidth > 1e8, `${machine}, ${bandwidth}`);
-    assert.equal(await page.locator("#bench tbody").count(), rows.length);
+    const plain = rows.filter((/** @type {{ engine: string }} */ { engine }) => engine === "limn-wasm");
+    const shaded = rows.filter((/** @type {{ engine: string }} */ { engine }) => engine === "limn-wasm-shaded");
+    assert.deepEqual([plain.length, shaded.length], Array(2).fill(await page.locator("#bench tbody").count()));
+    // Once without normals and once with them: 12 bytes a point more.
+    for (const [at, row] of shaded.entries()) {
+      assert.deepEqual([plain[at].stores, row.stores], ["points, corners", "points, normals, corners"]);
+      const points = (row.output_bytes - plain[at].output_bytes) / 12;
+      assert.ok(Number.isInteger(points) && points >= row.faces / 2 && plain[at].output_bytes > 16 * row.faces, JSON.stringify(row));
+    }
     for (const row of rows) {
       assert.ok(row.engine && row.scheme && row.median_ms > 0 && row.ns_per_face > row.limit_ns_per_face, JSON.stringify(row));
       assert.ok(Math.abs((row.median_ms * 1e6) / row.faces - row.ns_per_face) < 1e-6 * row.ns_per_face, JSON.stringify(row));
     }
-    const faces = rows.map((/** @type {{ faces: number }} */ row) => row.faces);
+    const faces = plain.map((/** @type {{ faces: number }} */ row) => row.faces);
     assert.deepEqual(faces.slice(-5), [6, 96, 1536, 24576, 98304], "a cube's levels");
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390, "nothing sticks out on a phone");
   });

@@ -1,9 +1,9 @@
 //! Limn itself, natively: each of its ways to a level is one entry of [`PATHS`].
 
-use super::{Absent, Engine, GENERAL, Job, LIMN, REFINE, Run};
+use super::{Absent, Engine, GENERAL, Job, LIMN, REFINE, Run, SHADED};
 use crate::{clock, memory};
-use limn_kernel::trial::{same::Surface, surface};
-use limn_mesh::{Boundary, Mesh, Plan, Refined, Soup, Weld, refine, scheme};
+use limn_kernel::trial::{level, same::Surface, surface};
+use limn_mesh::{Boundary, Mesh, Plan, Refined, Soup, Weld, scheme};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ pub struct Path {
     name: &'static str,
     /// Whether the clock starts with indexed faces, and not with a built mesh.
     builds: bool,
+    /// Whether it stores normals.
+    shaded: bool,
     make: Make,
 }
 
@@ -33,14 +35,19 @@ pub struct Path {
 type Make = fn(&Arc<Mesh>, &Plan) -> Result<Option<Box<dyn Made>>, String>;
 
 /// All of them. The first is what the others are compared with: patches where they carry the plan, else level by level.
-pub const PATHS: [Path; 3] = [
-    Path { id: LIMN, name: "Limn", builds: true, make: usual },
-    Path { id: REFINE, name: "Limn, mesh built", builds: false, make: usual },
-    Path { id: GENERAL, name: "Limn, general path", builds: true, make: general },
+pub const PATHS: [Path; 4] = [
+    Path { id: LIMN, name: "Limn", builds: true, shaded: false, make: usual },
+    Path { id: SHADED, name: "Limn + normals", builds: true, shaded: true, make: with_normals },
+    Path { id: REFINE, name: "Limn, mesh built", builds: false, shaded: false, make: usual },
+    Path { id: GENERAL, name: "Limn, general path", builds: true, shaded: false, make: general },
 ];
 
 fn usual(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
-    Ok(Some(Box::new(refine(mesh, plan, u64::MAX).map_err(|e| e.to_string())?)))
+    Ok(Some(Box::new(level(mesh, plan, false)?)))
+}
+
+fn with_normals(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
+    Ok(Some(Box::new(level(mesh, plan, true)?)))
 }
 
 fn general(mesh: &Arc<Mesh>, plan: &Plan) -> Result<Option<Box<dyn Made>>, String> {
@@ -84,6 +91,10 @@ impl Engine for Path {
 
     fn clock(&self) -> &'static str {
         clock::CLOCK
+    }
+
+    fn shaded(&self) -> bool {
+        self.shaded
     }
 
     fn prepare<'a>(&'a mut self, job: &'a Job<'a>) -> Result<Box<dyn Run + 'a>, Absent> {

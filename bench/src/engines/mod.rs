@@ -64,9 +64,17 @@ pub trait Engine {
     fn name(&self) -> &str;
     /// The clock of its times: `thread` or `wall`.
     fn clock(&self) -> &'static str;
+    /// Seconds that a sample lasts at least, by how fine the clock is.
+    fn sample(&self) -> f64 {
+        0.002
+    }
     /// Bytes a second of plain stores where it runs, if that is not this program.
     fn bandwidth(&self) -> Option<f64> {
         None
+    }
+    /// Whether it stores unit normals too, beside points and corners.
+    fn shaded(&self) -> bool {
+        false
     }
     /// Whether its scheme `id` is another than Limn's.
     fn differs(&self, _id: &str) -> Option<Differs> {
@@ -86,7 +94,7 @@ pub trait Engine {
 
 /// A job that an engine has taken.
 pub trait Run {
-    /// Seconds that so many runs take, from indexed faces to points and faces.
+    /// Seconds that so many runs take, from indexed faces to points and faces, and normals if the engine stores them.
     fn time(&mut self, repeats: u32) -> Result<f64, String>;
     /// What it makes.
     fn surface(&mut self) -> Result<Surface, String>;
@@ -99,6 +107,8 @@ pub const LIMN: &str = "limn";
 /// The part of it that begins with a built mesh.
 pub const REFINE: &str = "limn-refine";
 
+/// The first with unit normals: what a picture needs.
+pub const SHADED: &str = "limn-shaded";
 /// Limn from indexed faces, every level from the one before: what all surfaces are held against.
 pub const GENERAL: &str = "limn-general";
 

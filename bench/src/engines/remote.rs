@@ -5,6 +5,8 @@
 //! ```text
 //!   it says     engine ID NAME ...      one line an engine
 //!               bandwidth ID BYTES/S        what plain stores reach there, if that is not what they reach natively
+//!               clock ID WORD               `thread` or `wall`, if it is not what whoever started it says
+//!               shaded ID                   where it stores normals too, beside points and corners
 //!               excuse ID WORDS ...         what it is known to do wrong: it has no figure where it does
 //!               machine KEY WORDS ...   browser or adapter, if it has one
 //!               note WORDS ...          what a reader of the table should know
@@ -70,8 +72,16 @@ pub fn start(command: &mut Command, clock: &'static str) -> Result<Found, String
                 clock,
                 program: Rc::clone(&program),
                 bandwidth: None,
+                shaded: false,
                 excuse: None,
             }),
+            (Some("clock"), Some(id)) => {
+                let clock = if rest == "thread" { "thread" } else { "wall" };
+                engines.iter_mut().filter(|engine| engine.id == id).for_each(|engine| engine.clock = clock);
+            }
+            (Some("shaded"), Some(id)) => {
+                engines.iter_mut().filter(|engine| engine.id == id).for_each(|engine| engine.shaded = true);
+            }
             (Some("excuse"), Some(id)) => {
                 let known = engines.iter_mut().filter(|engine| engine.id == id);
                 known.for_each(|engine| engine.excuse = Some(rest.to_owned()));
@@ -124,6 +134,7 @@ struct Remote {
     clock: &'static str,
     program: Rc<RefCell<Program>>,
     bandwidth: Option<f64>,
+    shaded: bool,
     excuse: Option<String>,
 }
 
@@ -142,6 +153,15 @@ impl Engine for Remote {
 
     fn bandwidth(&self) -> Option<f64> {
         self.bandwidth
+    }
+
+    /// A browser's clock tells tenths of a millisecond; where it is the thread's, handing a question over counts.
+    fn sample(&self) -> f64 {
+        0.02
+    }
+
+    fn shaded(&self) -> bool {
+        self.shaded
     }
 
     fn excuse(&self) -> Option<&str> {
@@ -247,7 +267,7 @@ mod tests {
 
     #[test]
     fn a_program_that_speaks_is_an_engine_and_one_that_ends_is_a_sentence() {
-        let script = "echo engine it It speaks; echo bandwidth it 2.5e9; echo excuse it loses points; echo machine browser None 1; echo ready; \
+        let script = "echo engine it It speaks; echo bandwidth it 2.5e9; echo shaded it; echo clock it thread; echo excuse it loses points; echo machine browser None 1; echo ready; \
                       while read line; do case $line in prepare*) echo ok;; run*) echo ok 0.25;; *) echo no idea;; esac; done";
         let mut found = start(Command::new("sh").args(["-c", script]), "wall").unwrap();
         assert_eq!(found.machine, [("browser".to_owned(), "None 1".to_owned())]);
@@ -255,7 +275,7 @@ mod tests {
         let job = Job::new("loop", 1, &soup);
         let engine = &mut found.engines[0];
         assert_eq!((engine.id(), engine.name(), engine.bandwidth()), ("it", "It speaks", Some(2.5e9)));
-        assert_eq!(engine.excuse(), Some("loses points"));
+        assert_eq!((engine.shaded(), engine.clock(), engine.excuse()), (true, "thread", Some("loses points")));
         let Ok(mut run) = engine.prepare(&job) else { panic!("it takes the job") };
         assert_eq!(run.time(3), Ok(0.25));
         assert_eq!(run.peak(), Ok(None));

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   cage ──> Trial ── run ──> points and faces of level L ── differs ──> another library's
-//!                     ^ timed: Mesh::build and refine                    (in any numbering)
+//!                     ^ timed: Mesh::build and refine,                   (in any numbering)
+//!                              with normals if they are asked for
 //! ```
 //!
 //! The page's `?bench` runs it as WebAssembly; `cargo xtask bench` uses the same cages and the same comparison natively, and
@@ -12,7 +13,7 @@ pub mod cages;
 pub mod same;
 
 use crate::{Drawing, limits};
-use limn_mesh::{Boundary, Faces, Mesh, Plan, Refined, Soup, Weld, refine, scheme};
+use limn_mesh::{Boundary, Faces, Job, Mesh, Plan, Refined, Soup, Weld, scheme};
 use same::{Sorted, Surface};
 use std::sync::Arc;
 #[cfg(target_arch = "wasm32")]
@@ -27,6 +28,22 @@ pub fn surface(refined: &Refined) -> Surface {
         Faces::Polygons { offsets, .. } => offsets.iter().zip(offsets.iter().skip(1)).map(|(a, b)| b - a).collect(),
     };
     Surface { points: refined.points.clone(), counts, corners: faces.corners().to_vec() }
+}
+
+/// A level of a mesh, with unit normals at its points if it is `shaded`.
+///
+/// # Errors
+/// One sentence: [`limn_mesh::RefineError`].
+pub fn level(mesh: &Arc<Mesh>, plan: &Plan, shaded: bool) -> Result<Refined, String> {
+    let job = Job::new(Arc::clone(mesh), plan.clone(), u64::MAX).map_err(|e| e.to_string())?;
+    if !shaded {
+        return Ok(job.finish());
+    }
+    let mut made = job.shaded().finish();
+    if made.known_normals.is_none() {
+        made.known_normals = Some(made.normals());
+    }
+    Ok(made)
 }
 
 /// A cage, and what was made of it.
@@ -58,19 +75,16 @@ impl Trial {
         Trial { soup, made: None }
     }
 
-    /// Refines to a level, from indexed faces. With `first` the scheme's first parameter is set to that.
+    /// Refines to a level, from indexed faces; with unit normals at its points if it is `shaded`.
     ///
     /// # Errors
     /// One sentence: there is no such scheme, or the cage cannot be built, or not be refined by it.
-    pub fn run(&mut self, id: &str, level: u32, first: Option<f64>) -> Result<(), String> {
+    pub fn run(&mut self, id: &str, steps: u32, shaded: bool) -> Result<(), String> {
         self.made = None;
         let entry = scheme(id).ok_or_else(|| format!("there is no scheme `{id}`"))?;
-        let mut plan = Plan::new(entry, Boundary::default(), level);
-        if let Some(value) = first {
-            plan.params.set(&entry.info, 0, value);
-        }
+        let plan = Plan::new(entry, Boundary::default(), steps);
         let (mesh, _) = Mesh::build(&self.soup, Weld::Off).map_err(|e| e.to_string())?;
-        self.made = Some(refine(&Arc::new(mesh), &plan, u64::MAX).map_err(|e| e.to_string())?);
+        self.made = Some(level(&Arc::new(mesh), &plan, shaded)?);
         Ok(())
     }
 
@@ -107,6 +121,11 @@ impl Trial {
     /// How many vertices were made.
     pub fn vertices(&self) -> u32 {
         self.made.as_ref().map_or(0, |made| made.points.len() as u32)
+    }
+
+    /// How many unit normals were made.
+    pub fn normals(&self) -> u32 {
+        self.made.as_ref().and_then(|made| made.known_normals.as_ref()).map_or(0, |normals| normals.len() as u32)
     }
 
     /// How many corners the faces have together that were made.
@@ -177,9 +196,9 @@ mod tests {
     fn a_cage_by_its_arrays_is_refined_as_by_its_name() {
         let mut named = Trial::cage("cube", 0);
         let mut by_arrays = Trial::of(&named.positions(), &named.face_counts(), &named.face_corners(), &[], &[]);
-        assert_eq!(named.run("catmull-clark", 2, None), Ok(()));
-        assert_eq!(by_arrays.run("catmull-clark", 2, None), Ok(()));
-        assert_eq!((named.faces(), named.vertices(), named.corners()), (96, 98, 384));
+        assert_eq!(named.run("catmull-clark", 2, false), Ok(()));
+        assert_eq!(by_arrays.run("catmull-clark", 2, false), Ok(()));
+        assert_eq!((named.faces(), named.vertices(), named.corners(), named.normals()), (96, 98, 384, 0));
         let [p, n, c] = [by_arrays.positions().len(), by_arrays.face_counts().len(), by_arrays.face_corners().len()];
         assert_eq!((p, n, c), (3 * 98, 96, 384));
         let same = |t: &Trial| named.differs(&t.positions(), &t.face_counts(), &t.face_corners(), 1e-6);
@@ -187,17 +206,34 @@ mod tests {
         // A crease is taken, and told apart.
         let cube = Trial::cage("cube", 0);
         let mut creased = Trial::of(&cube.positions(), &cube.face_counts(), &cube.face_corners(), &[0, 1], &[10.0]);
-        assert_eq!(creased.run("catmull-clark", 2, None), Ok(()));
+        assert_eq!(creased.run("catmull-clark", 2, false), Ok(()));
         assert!(same(&creased).starts_with("a point is"), "{}", same(&creased));
+    }
+
+    #[test]
+    fn normals_are_made_where_they_are_asked_for_whatever_the_path() {
+        // By patches, level by level, and where nothing is done.
+        for (id, steps) in [("catmull-clark", 4), ("doo-sabin", 2), ("catmull-clark", 0)] {
+            let mut trial = Trial::cage("torus", 8);
+            assert_eq!(trial.run(id, steps, true), Ok(()));
+            let made = trial.made.as_ref().unwrap();
+            let normals = made.known_normals.as_ref().unwrap();
+            assert_eq!(normals.len(), made.points.len(), "{id}");
+            assert_eq!(trial.normals(), trial.vertices());
+            let plain = level(made.mesh(), &Plan::new(scheme(id).unwrap(), Boundary::default(), steps), false).unwrap();
+            assert!(plain.known_normals.is_none() && plain.points == made.points);
+            let off = normals.iter().zip(plain.normals()).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
+            assert!(off.fold(0.0, f32::max) < 1e-4, "{id}");
+        }
     }
 
     #[test]
     fn what_cannot_be_run_is_one_sentence() {
         let mut trial = Trial::of(&[0.0; 9], &[4], &[0, 1, 2, 7], &[], &[]);
-        assert!(trial.run("catmull-clark", 1, None).is_err());
-        assert!(trial.run("nothing", 1, None).is_err_and(|why| why.contains("`nothing`")));
+        assert!(trial.run("catmull-clark", 1, false).is_err());
+        assert!(trial.run("nothing", 1, false).is_err_and(|why| why.contains("`nothing`")));
         assert_eq!((trial.faces(), Trial::cage("nothing", 3).face_counts().len()), (0, 0));
-        assert!(Trial::cage("torus", 8).run("loop", 1, None).is_err(), "Loop takes triangles");
+        assert!(Trial::cage("torus", 8).run("loop", 1, false).is_err(), "Loop takes triangles");
     }
 
     #[test]
