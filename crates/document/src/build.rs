@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 
 use limn_formats::Model;
 use limn_mesh::pair::{ASK_BELOW, PairReport, pair_triangles};
-use limn_mesh::{Mesh, Note, Soup, TopologyError, Weld, triangulate_soup};
+use limn_mesh::{Honours, Mesh, Note, Soup, TopologyError, Weld, triangulate_soup};
 
 use crate::camera::Bounds;
 use crate::command::CreaseWhere;
@@ -55,6 +55,8 @@ pub(crate) struct Built {
     soup: Option<Soup>,
     pub remarks: Vec<Remark>,
     pub bounds: Bounds,
+    /// Which marks the mesh has, kept because every state of a page asks.
+    pub marks: Honours,
 }
 
 impl Built {
@@ -67,7 +69,7 @@ impl Built {
         // Welding is what the format asked for; everything else is worth a look.
         remarks.extend(report.notes.iter().map(|n| Remark::new(&n.to_string(), matches!(n, Note::Welded { .. }))));
         let bounds = Bounds::of(&mesh.positions).unwrap_or_default();
-        Ok(Built { mesh: Arc::new(mesh), soup, remarks, bounds })
+        Ok(Built { marks: mesh.marks(), mesh: Arc::new(mesh), soup, remarks, bounds })
     }
 }
 

@@ -412,6 +412,11 @@ impl Document {
         self.state.as_ref().map(|s| &s.built.mesh)
     }
 
+    /// Whether some of its edges or vertices are semi-sharp.
+    pub fn has_semi_sharp(&self) -> bool {
+        self.state.as_ref().is_some_and(|s| s.built.marks.semi_sharp)
+    }
+
     /// The model's own polygons, whatever the scheme makes of them first: marks are of them.
     pub fn polygons(&self) -> Option<&Arc<Mesh>> {
         self.state.as_ref().map(|s| &s.base.polygons.mesh)

@@ -81,7 +81,7 @@ impl Document {
             // Building the triangles meets the same trouble again: only what is new is said.
             remarks.extend(state.built.remarks.iter().filter(|r| !polygons.contains(r)).cloned());
         }
-        if let Some((scheme, honours)) = state.plan().ignores_marks(&state.built.mesh) {
+        if let Some((scheme, honours)) = state.plan().ignores(state.built.marks) {
             remarks.push(Remark::new(&ignored(&scheme.info, honours), false));
         }
         remarks

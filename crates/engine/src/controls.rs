@@ -3,12 +3,12 @@
 //! The page makes its buttons from [`CONTROLS`] and presses the one that [`values`] names. A new row is a line here.
 
 use limn_document::{Command, Document, ViewSet, parameters};
-use limn_mesh::marks::INFINITE;
 use limn_mesh::{Boundary, Domain, Family, LimitRule, Weld};
 use serde::{Serialize, Serializer};
 
 use crate::compare::name;
 use crate::protocol::{Parameter, ParameterChoice, Run};
+use crate::report::Facts;
 
 /// A row.
 #[derive(Debug, Serialize)]
@@ -338,8 +338,8 @@ pub fn runs(document: &Document) -> Vec<Run> {
     plan.later.iter().map(row).collect()
 }
 
-/// The rows that make no difference to this model. `open` says whether it has a rim.
-pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
+/// The rows that make no difference to this model, of which `facts` are. Cost: constant.
+pub fn disabled(document: &Document, facts: &Facts) -> Vec<&'static str> {
     let mut rows = Vec::new();
     let (Some(model), Some(mesh)) = (document.model(), document.mesh()) else { return rows };
     if model.images.is_empty() {
@@ -351,25 +351,24 @@ pub fn disabled(document: &Document, open: bool) -> Vec<&'static str> {
     if !document.panes().iter().any(|p| p.plan.level > 0 && p.plan.scheme.info.family == Family::Dual) {
         rows.push("kinds");
     }
-    if !open {
+    if facts.stats.boundary_loops == 0 {
         rows.push("boundary");
     }
     if document.plan().is_some_and(|p| p.scheme.limit == LimitRule::Itself) {
         rows.push("limit");
     }
-    if mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness).all(|&s| s == 0.0 || s >= INFINITE) {
+    if !document.has_semi_sharp() {
         rows.push("crease-decay");
     }
     if mesh.uv.is_none() {
         rows.push("face-varying");
     }
     let paired = document.reading().is_some_and(|(quads, _)| quads);
-    let triangles = model.soup.offsets.windows(2).any(|w| matches!(w, &[a, b] if b - a == 3));
-    if !paired && !triangles {
+    if !paired && !facts.triangles {
         rows.push("quads");
     }
     let catmull_clark = document.plan().is_some_and(|p| p.scheme.info.id == "catmull-clark");
-    if !(catmull_clark && triangles) {
+    if !(catmull_clark && facts.triangles) {
         rows.push("triangle-rule");
     }
     rows

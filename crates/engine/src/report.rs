@@ -1,14 +1,15 @@
 //! The document as the page shows it: the ruler's notches, a line about the model, its facts.
 //!
-//! Facts that take a walk over the mesh ([`Facts`]) are made once for each mesh; everything else is cheap enough for every
-//! state message.
+//! Facts that take a walk over the mesh or the model's polygons ([`Facts`]) are made once for each mesh; everything else is
+//! cheap enough for every state message, of which an orbiting camera sends five a second.
 
 use limn_document::Document;
 use limn_document::numbers::significant;
+use limn_document::view::insert_name;
 use limn_mesh::{Connectivity, Mesh, Stats};
 use limn_mesh::{grouped, memory, order};
 
-use crate::protocol::{Count, Fact, Level};
+use crate::protocol::{Count, Fact, Group, Level};
 
 /// The lowest and the highest number of notches on the ruler.
 const NOTCHES: (u32, u32) = (5, 10);
@@ -47,7 +48,7 @@ pub fn ruler(document: &Document) -> Vec<Level> {
     levels
 }
 
-/// What a walk over the mesh tells.
+/// What a walk over the mesh and the model's polygons tells.
 pub struct Facts {
     /// Loops, components, genus, bounds.
     pub stats: Stats,
@@ -55,11 +56,15 @@ pub struct Facts {
     polygons: String,
     /// "1,450 quads": the most frequent kind.
     most: String,
+    /// Whether the file has triangles.
+    pub triangles: bool,
+    /// How many of the file's faces are in each group.
+    groups: Vec<u64>,
 }
 
 impl Facts {
-    /// Walks the mesh. Cost: linear.
-    pub fn of(mesh: &Mesh) -> Facts {
+    /// Walks the mesh and the polygons of a document. Cost: linear.
+    pub fn of(document: &Document, mesh: &Mesh) -> Facts {
         let t = &mesh.topology;
         let mut kinds: Vec<(u32, u64)> = Vec::new();
         for f in 0..t.faces() {
@@ -91,7 +96,40 @@ impl Facts {
             [one] => text(one),
             _ => format!("{} faces", grouped(u64::from(t.faces()))),
         };
-        Facts { stats: mesh.stats(), polygons, most }
+        let mut facts = Facts { stats: mesh.stats(), polygons, most, triangles: false, groups: Vec::new() };
+        if let Some(model) = document.model() {
+            facts.triangles = model.soup.offsets.windows(2).any(|w| matches!(w, &[a, b] if b - a == 3));
+            facts.groups = vec![0; model.groups.len()];
+            for &group in &model.soup.face_groups {
+                if let Some(count) = facts.groups.get_mut(group as usize) {
+                    *count += 1;
+                }
+            }
+        }
+        facts
+    }
+
+    /// The groups that can be hidden: none if there is one only.
+    pub fn groups(&self, document: &Document) -> Vec<Group> {
+        let (Some(model), view) = (document.model(), document.view()) else { return Vec::new() };
+        if model.groups.len() < 2 {
+            return Vec::new();
+        }
+        model
+            .groups
+            .iter()
+            .zip(&self.groups)
+            .map(|(name, &faces)| {
+                let hidden = view.hides(name);
+                let mut names: Vec<String> = view.hidden.iter().filter(|n| *n != name).cloned().collect();
+                if !hidden {
+                    insert_name(&mut names, name.clone());
+                }
+                let set = limn_document::ViewSet::Hide(names);
+                let command = format!("view {}", limn_document::words::quote(&set.to_string()));
+                Group { name: name.clone(), faces, hidden, command }
+            })
+            .collect()
     }
 
     /// One line under the model's name.
@@ -176,7 +214,7 @@ mod tests {
     fn a_model_in_one_line() {
         let line = |name: &str| {
             let document = open(&format!("open builtin:{name}"), 1 << 30);
-            Facts::of(document.mesh().unwrap()).summary()
+            Facts::of(&document, document.mesh().unwrap()).summary()
         };
         assert_eq!(line("cube"), "6 quads, closed");
         assert_eq!(line("torus"), "128 quads, closed, genus 1");
@@ -184,7 +222,7 @@ mod tests {
         assert_eq!(line("moebius"), "16 quads, open, one-sided");
         assert_eq!(line("mouse"), "54 faces, closed");
         let document = open("open builtin:mouse", 1 << 30);
-        let rows = Facts::of(document.mesh().unwrap()).rows(&document);
+        let rows = Facts::of(&document, document.mesh().unwrap()).rows(&document);
         let row = |label: &str| rows.iter().find(|r| r.label == label).unwrap().value.clone();
         assert_eq!(row("Faces"), "53 quads, 1 hexagon");
         assert_eq!(row("Edges"), "109");

@@ -74,6 +74,18 @@ enum Held {
     Triangles,
 }
 
+impl Mesh {
+    /// Which marks there are. Cost: every edge and vertex where there are any, so whoever asks often keeps the answer.
+    pub fn marks(&self) -> Honours {
+        let both = || self.edge_sharpness.iter().chain(&self.vertex_sharpness);
+        Honours {
+            semi_sharp: both().any(|&s| s > 0.0 && s < INFINITE),
+            creases: self.edge_sharpness.iter().any(|&s| s >= INFINITE),
+            corners: self.vertex_sharpness.iter().any(|&s| s >= INFINITE),
+        }
+    }
+}
+
 impl Plan {
     /// A plan of one scheme with its own parameters.
     pub fn new(scheme: &'static Entry, boundary: Boundary, level: u32) -> Plan {
@@ -164,16 +176,14 @@ impl Plan {
         })
     }
 
-    /// The first scheme of the plan to which some of the marks of `mesh` mean nothing, and which do mean something to it; at
-    /// level 0 the one that would come first.
-    pub fn ignores_marks(&self, mesh: &Mesh) -> Option<(&'static Entry, Honours)> {
-        let both = || mesh.edge_sharpness.iter().chain(&mesh.vertex_sharpness);
-        let semi_sharp = both().any(|&s| s > 0.0 && s < INFINITE);
-        let creases = mesh.edge_sharpness.iter().any(|&s| s >= INFINITE);
-        let corners = mesh.vertex_sharpness.iter().any(|&s| s >= INFINITE);
+    /// The first scheme of the plan to which some of these marks mean nothing, and which do mean something to it; at
+    /// level 0 the one that would come first. `marks` are the mesh's: [`Mesh::marks`].
+    pub fn ignores(&self, marks: Honours) -> Option<(&'static Entry, Honours)> {
         let ignores = |e: &'static Entry| {
             let honours = e.honours;
-            let some = semi_sharp && !honours.semi_sharp || creases && !honours.creases || corners && !honours.corners;
+            let some = marks.semi_sharp && !honours.semi_sharp
+                || marks.creases && !honours.creases
+                || marks.corners && !honours.corners;
             some.then_some((e, honours))
         };
         (0..self.level.max(1)).map(|step| self.run(step).scheme).find_map(ignores)

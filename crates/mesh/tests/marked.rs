@@ -224,7 +224,7 @@ fn fairing_keeps_what_is_sharp() {
 fn plans_know_what_they_ignore() {
     let mesh: Arc<Mesh> = build(&marked((shape("cube").unwrap().build)()));
     let first =
-        |id: &str| Plan::new(scheme(id).unwrap(), Boundary::default(), 2).ignores_marks(&mesh).map(|e| e.0.info.id);
+        |id: &str| Plan::new(scheme(id).unwrap(), Boundary::default(), 2).ignores(mesh.marks()).map(|e| e.0.info.id);
     assert_eq!(first("catmull-clark"), None);
     assert_eq!(first("linear"), None);
     assert_eq!(first("doo-sabin"), Some("doo-sabin"));
@@ -233,15 +233,15 @@ fn plans_know_what_they_ignore() {
     let mut soup = triangulate_soup(&(shape("cube").unwrap().build)()).0;
     soup.marks.creases.push(([soup.face(0)[0], soup.face(0)[1]], 10.0));
     let turned = Plan::new(scheme("sqrt3").unwrap(), Boundary::default(), 2);
-    assert!(turned.ignores_marks(&build(&soup)).is_none());
+    assert!(turned.ignores(build(&soup).marks()).is_none());
     let mut semi = soup.clone();
     semi.marks.creases[0].1 = 2.0;
-    let honours = turned.ignores_marks(&build(&semi)).unwrap().1;
+    let honours = turned.ignores(build(&semi).marks()).unwrap().1;
     assert!(honours.creases && !honours.semi_sharp && honours.corners);
     let mut plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), 2);
     plan.later = vec![Run { from: 1, scheme: scheme("doo-sabin").unwrap(), params: Params::default() }];
-    assert_eq!(plan.ignores_marks(&mesh).map(|e| e.0.info.id), Some("doo-sabin"));
-    assert!(plan.ignores_marks(&build(&(shape("cube").unwrap().build)())).is_none());
+    assert_eq!(plan.ignores(mesh.marks()).map(|e| e.0.info.id), Some("doo-sabin"));
+    assert!(plan.ignores(build(&(shape("cube").unwrap().build)()).marks()).is_none());
 }
 
 /// Three sheets that share a line: whatever the scheme, each ends there in the same curve, to the bit, as on any rim.

@@ -94,26 +94,44 @@ fn butterfly_s_tension_and_loop_s_weights() {
 
 #[test]
 fn rows_that_make_no_difference_are_off() {
+    let disabled = |document: &Document| disabled(document, &Facts::of(document, document.mesh().unwrap()));
     let mut document = Document::new(1 << 30);
     document.run("open builtin:cube").unwrap();
     assert_eq!(
-        disabled(&document, false),
+        disabled(&document),
         ["textures", "colors", "kinds", "boundary", "crease-decay", "face-varying", "quads", "triangle-rule"]
     );
+    document.run("open builtin:grid").unwrap();
+    assert!(!disabled(&document).contains(&"boundary"));
     document.run("open builtin:pawn").unwrap();
     assert_eq!(
-        disabled(&document, true),
-        ["textures", "colors", "kinds", "crease-decay", "face-varying", "triangle-rule"]
+        disabled(&document),
+        ["textures", "colors", "kinds", "boundary", "crease-decay", "face-varying", "triangle-rule"]
     );
     document.run("scheme linear").unwrap();
-    assert!(disabled(&document, true).contains(&"limit"));
+    assert!(disabled(&document).contains(&"limit"));
     document.run("scheme catmull-clark").unwrap();
     document.run("crease angle 30 2").unwrap();
-    assert_eq!(disabled(&document, true), ["textures", "colors", "kinds", "face-varying"]);
+    assert_eq!(disabled(&document), ["textures", "colors", "kinds", "boundary", "face-varying"]);
     document.run("scheme doo-sabin").unwrap();
-    assert!(disabled(&document, true).contains(&"kinds"), "level 0 has no kinds");
+    assert!(disabled(&document).contains(&"kinds"), "level 0 has no kinds");
     document.run("level 1").unwrap();
-    assert!(!disabled(&document, true).contains(&"kinds"));
+    assert!(!disabled(&document).contains(&"kinds"));
+}
+
+/// An orbiting camera asks five times a second: the answers are those of the facts, whatever polygons there are by now.
+#[test]
+fn what_a_moving_camera_sends_walks_over_no_polygons() {
+    let mut open = Document::new(1 << 30);
+    open.run("open builtin:grid").unwrap();
+    let mut document = Document::new(1 << 30);
+    document.run("open builtin:pawn").unwrap();
+    let of = |document: &Document| Facts::of(document, document.mesh().unwrap());
+    let (grid, pawn) = (of(&open), of(&document));
+    let off = |facts: &Facts, row: &str| disabled(&document, facts).contains(&row);
+    for row in ["quads", "boundary"] {
+        assert_ne!(off(&grid, row), off(&pawn, row), "{row}");
+    }
 }
 
 #[test]

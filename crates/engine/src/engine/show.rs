@@ -6,7 +6,7 @@ use glam::{Mat4, Vec2, Vec3};
 use limn_document::Source;
 use limn_document::camera::{Bounds, UpAxis};
 use limn_document::export::ExportError;
-use limn_document::view::{Background, Edges, Shading, insert_name};
+use limn_document::view::{Background, Edges, Shading};
 use limn_render::{Camera, Frame, Style};
 use wasm_bindgen::JsValue;
 
@@ -14,7 +14,7 @@ use super::Engine;
 use super::open::Opening;
 use crate::gestures::Viewport;
 use crate::making::Made;
-use crate::protocol::{Count, ExportChoice, Group, ModelState, Remark, Shown, State};
+use crate::protocol::{Count, ExportChoice, ModelState, Remark, Shown, State};
 use crate::{compare, controls, report};
 use limn_document::words::sentence;
 
@@ -217,8 +217,8 @@ impl Engine {
                 || self.opening.as_ref().is_some_and(Opening::comes),
             compare: compare::compare(document, &panes, &self.views, about),
             values: controls::values(document),
-            disabled: controls::disabled(document, facts.is_some_and(|f| f.stats.boundary_loops > 0)),
-            groups: self.groups(),
+            disabled: facts.map(|f| controls::disabled(document, f)).unwrap_or_default(),
+            groups: facts.map(|f| f.groups(document)).unwrap_or_default(),
             report: document
                 .remarks()
                 .into_iter()
@@ -244,34 +244,6 @@ impl Engine {
                 _ => String::new(),
             },
         }
-    }
-
-    fn groups(&self) -> Vec<Group> {
-        let (Some(model), view) = (self.document.model(), self.document.view()) else { return Vec::new() };
-        if model.groups.len() < 2 {
-            return Vec::new();
-        }
-        let mut faces = vec![0u64; model.groups.len()];
-        for &group in &model.soup.face_groups {
-            if let Some(count) = faces.get_mut(group as usize) {
-                *count += 1;
-            }
-        }
-        model
-            .groups
-            .iter()
-            .zip(faces)
-            .map(|(name, faces)| {
-                let hidden = view.hides(name);
-                let mut names: Vec<String> = view.hidden.iter().filter(|n| *n != name).cloned().collect();
-                if !hidden {
-                    insert_name(&mut names, name.clone());
-                }
-                let set = limn_document::ViewSet::Hide(names);
-                let command = format!("view {}", limn_document::words::quote(&set.to_string()));
-                Group { name: name.clone(), faces, hidden, command }
-            })
-            .collect()
     }
 
     /// Writes a file now, or when the level that is being made is there.

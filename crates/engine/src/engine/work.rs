@@ -51,7 +51,7 @@ impl Engine {
         self.dirty.state = true;
         let Some(mesh) = self.document.mesh().cloned() else { return };
         if self.known.as_ref().is_none_or(|k| !Arc::ptr_eq(&k.mesh, &mesh)) {
-            let (facts, parts) = (Facts::of(&mesh), Arc::new(Parts::of(&self.document)));
+            let (facts, parts) = (Facts::of(&self.document, &mesh), Arc::new(Parts::of(&self.document)));
             self.known = Some(Known { mesh: mesh.clone(), facts, parts });
         }
         let Some(parts) = self.known.as_ref().map(|k| k.parts.clone()) else { return };
