@@ -22,9 +22,9 @@ use wasm_bindgen_cli_support::Bindgen;
 /// What is compiled for speed where files are read; the engine only unpacks what that sends.
 const READS_FAST: &str = "profile.dist.package.limn-formats.opt-level=3";
 
-/// How the kernel's own crate is compiled. It is a few calls, but passes over the whole linked module run at the level of the
-/// crate that is linked: at z nothing turns the loops over lanes of `mesh/src/patch/grid.rs` into vector instructions, and
-/// patches take twice the time.
+/// How the kernel's own crate is compiled. It is a few calls, but the passes over the whole linked module run at the level of the
+/// crate that is linked, whatever the others are compiled at: at z and at 2 the loops over lanes of `mesh/src/patch/grid.rs`, and
+/// patches with them, take twice the time that they take at 3.
 const REFINES_FAST: &str = "profile.dist.package.limn-kernel.opt-level=3";
 
 /// One of the wasm modules.
