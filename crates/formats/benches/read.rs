@@ -5,35 +5,13 @@
 //! stores measured in the same run. One thread, memory warm, as in a browser, where wasm memory never shrinks (natively the
 //! allocator is told to keep it). A word selects rows by name.
 
+#[path = "../../mesh/benches/timing/mod.rs"]
+mod timing;
+
 use limn_formats::{Export, ExportFaces, Limits, read, write_glb};
 use std::fmt::Write;
 use std::hint::black_box;
-use std::time::Instant;
-
-fn median(runs: usize, mut f: impl FnMut()) -> f64 {
-    f();
-    let mut t: Vec<f64> = (0..runs)
-        .map(|_| {
-            let start = Instant::now();
-            f();
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    t.sort_by(f64::total_cmp);
-    t[t.len() / 2]
-}
-
-/// Bytes a second that plain stores reach on memory that has been touched.
-fn bandwidth() -> f64 {
-    let mut buffer = vec![0u64; 1 << 23];
-    let mut k = 0;
-    let t = median(9, || {
-        k += 1;
-        buffer.iter_mut().for_each(|x| *x = k);
-        black_box(&buffer);
-    });
-    (buffer.len() * 8) as f64 / t
-}
+use timing::{bandwidth, median};
 
 /// A torus of so many quads around and across: points, normals, texture coordinates, quads.
 struct Torus {

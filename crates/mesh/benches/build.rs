@@ -9,35 +9,12 @@
 //! indices), and of both, beside the time that reading the soup once and storing what comes out takes at the bandwidths
 //! measured in the same run. One thread. Warm and fresh memory as in `refine.rs`. A word selects rows by name.
 
+mod timing;
+
 use limn_mesh::{Boundary, Mesh, Plan, Soup, Weld, refine, scheme};
 use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Instant;
-
-fn median(runs: usize, mut f: impl FnMut()) -> f64 {
-    f();
-    let mut t: Vec<f64> = (0..runs)
-        .map(|_| {
-            let start = Instant::now();
-            f();
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    t.sort_by(f64::total_cmp);
-    t[t.len() / 2]
-}
-
-/// Bytes a second that plain stores reach on memory that has been touched.
-fn bandwidth() -> f64 {
-    let mut buffer = vec![0u64; 1 << 23];
-    let mut k = 0;
-    let t = median(9, || {
-        k += 1;
-        buffer.iter_mut().for_each(|x| *x = k);
-        black_box(&buffer);
-    });
-    (buffer.len() * 8) as f64 / t
-}
+use timing::{bandwidth, median};
 
 /// A torus of `2 * around * across` triangles, row after row.
 fn torus(around: u32, across: u32) -> Soup {

@@ -7,35 +7,12 @@
 //! Memory is warm: the allocator keeps what a run gives back, as it does in a browser, where wasm memory never shrinks.
 //! Natively a second table shows fresh memory, where every run pays for its page faults. A word selects rows by name.
 
+mod timing;
+
 use limn_mesh::{Boundary, Drag, Mesh, Plan, Soup, Weld, refine, scheme, shape, triangulate_soup};
 use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Instant;
-
-fn median(runs: usize, mut f: impl FnMut()) -> f64 {
-    f();
-    let mut t: Vec<f64> = (0..runs)
-        .map(|_| {
-            let start = Instant::now();
-            f();
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    t.sort_by(f64::total_cmp);
-    t[t.len() / 2]
-}
-
-/// Bytes a second that plain stores reach on memory that has been touched.
-fn bandwidth() -> f64 {
-    let mut buffer = vec![0u64; 1 << 23];
-    let mut k = 0;
-    let t = median(9, || {
-        k += 1;
-        buffer.iter_mut().for_each(|x| *x = k);
-        black_box(&buffer);
-    });
-    (buffer.len() * 8) as f64 / t
-}
+use timing::{bandwidth, median};
 
 struct Table {
     word: String,

@@ -10,35 +10,17 @@
 
 #[path = "../tests/common/mod.rs"]
 mod common;
+#[path = "../../mesh/benches/timing/mod.rs"]
+mod timing;
 
 use glam::Vec3;
 use limn_render::{Faces, Gpu, Renderer, Style, SurfaceData, Tier, wgpu};
 use std::hint::black_box;
 use std::time::Instant;
+use timing::{bandwidth, middle};
 
 /// The slice that the engine takes between two looks at the clock.
 const SLICE: usize = 16 << 10;
-
-fn median(runs: usize, mut f: impl FnMut() -> f64) -> f64 {
-    f();
-    let mut t: Vec<f64> = (0..runs).map(|_| f()).collect();
-    t.sort_by(f64::total_cmp);
-    t[t.len() / 2]
-}
-
-/// Bytes a second that plain stores reach on memory that has been touched.
-fn bandwidth() -> f64 {
-    let mut buffer = vec![0u64; 1 << 23];
-    let mut k = 0;
-    let t = median(9, || {
-        let start = Instant::now();
-        k += 1;
-        buffer.iter_mut().for_each(|x| *x = k);
-        black_box(&buffer);
-        start.elapsed().as_secs_f64()
-    });
-    (buffer.len() * 8) as f64 / t
-}
 
 /// A square of n x n quads bent to a bowl, split once: points, normals, quads, and where face and edge points begin.
 struct Bowl {
@@ -106,7 +88,7 @@ fn main() {
             let _ = renderer.gpu().device.poll(wgpu::PollType::wait_indefinitely());
             if indices { all - half } else { half }
         };
-        let [points, indices] = [false, true].map(|indices| median(9, || upload(indices)) * 1e9 / faces);
+        let [points, indices] = [false, true].map(|indices| middle(9, || upload(indices)) * 1e9 / faces);
         renderer.set_surface(&data).unwrap_or_else(|e| panic!("{e}"));
         let limit = 40.0 * 2.0 / bytes_per_second * 1e9;
         let frame = frame(&mut renderer) * 1e6;
@@ -129,7 +111,7 @@ fn frame(renderer: &mut Renderer) -> f64 {
     });
     let view = texture.create_view(&Default::default());
     let mut turn = 0.0f32;
-    median(9, || {
+    middle(9, || {
         turn += 0.1;
         let eye = [3.0 * turn.cos(), 2.0, 3.0 * turn.sin()];
         let camera = common::perspective(eye, [0.0; 3], 1.0, 2.0);
