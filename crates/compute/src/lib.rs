@@ -7,7 +7,7 @@
 //!              (by arithmetic)                   └──► indices       one dispatch each, all of them in one compute pass
 //! ```
 //!
-//! Nothing here has a device: a [`Program`] says which buffers there are and what runs on them, and who has one runs it ([`program`]).
+//! Nothing here has a device: a [`Program`] says which buffers there are and what runs on them, and who has one runs it ([`mod@program`]).
 //! Two ways make the points. *The fused gather* (`fused.rs`): hand-written rules that find a level's neighbours through `twin`
 //! and `origin` alone, so a level costs one dispatch and no atomics; half-edges of the next level are arithmetic (Dupuy & Vanhoey
 //! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Rows* (`rows.rs`): every other scheme's weights as sparse

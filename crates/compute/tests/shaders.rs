@@ -1,4 +1,4 @@
-//! Every WGSL kernel is valid.
+//! Every WGSL kernel is valid as it is handed to a device: its parts joined, with the constants of its variant before them.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 

@@ -110,14 +110,14 @@ impl Work for Away {
     fn finish(self: Box<Self>) -> Result<Refined, String> {
         let Some(run) = &self.run else { return Err(String::new()) };
         let bytes = run.finish().map_err(sentence)?;
-        let level = Refined::unpack(&bytes, self.mesh.clone(), |i, out| run.large(i as usize).copy_to(out));
+        let level = Refined::unpack(&bytes, self.mesh.clone(), |i, out| run.large(i).copy_to(out));
         level.map_err(|e| e.to_string())
     }
 }
 
 impl Gpus for Drawing {
-    fn bounds(&self) -> Result<Vec<f32>, ()> {
-        Drawing::bounds(self).map_err(drop)
+    fn bounds(&self) -> Option<Vec<f32>> {
+        Drawing::bounds(self).ok()
     }
 
     fn runs(&self) -> Vec<u32> {

@@ -155,11 +155,8 @@ pub trait Work {
 
 /// A level that the GPU refines, into a surface's own buffers.
 pub trait Gpus {
-    /// The box of the points, lowest coordinates first; empty while it is at work.
-    ///
-    /// # Errors
-    /// If it failed, and the CPU has to do it.
-    fn bounds(&self) -> Result<Vec<f32>, ()>;
+    /// The box of the points, lowest coordinates first; empty while it is at work. None: it failed, and the CPU has to do it.
+    fn bounds(&self) -> Option<Vec<f32>>;
     /// The runs of parts.
     fn runs(&self) -> Vec<u32>;
 }
@@ -232,7 +229,7 @@ impl Making {
 
     /// Whether there is nothing to do before the GPU is ready.
     pub fn waits(&self) -> bool {
-        matches!(&self.stage, Stage::Wait(gpu, ..) if gpu.bounds().is_ok_and(|b| b.is_empty()))
+        matches!(&self.stage, Stage::Wait(gpu, ..) if gpu.bounds().is_some_and(|b| b.is_empty()))
     }
 
     /// Begins with the points of `made`, for the other layout.
@@ -283,13 +280,13 @@ impl Making {
         let stage = std::mem::replace(&mut self.stage, Stage::Over);
         let (next, kind) = match stage {
             Stage::Wait(gpu, mut surface, made, since) => match gpu.bounds().as_deref() {
-                Ok(&[a, b, c, d, e, f]) => {
+                Some(&[a, b, c, d, e, f]) => {
                     self.spent[0] = start - since;
                     surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, &made.parts.list, &gpu.runs());
                     return Ok(Step::Done(made, surface));
                 }
-                Ok(_) => (Stage::Wait(gpu, surface, made, since), 1),
-                Err(()) => return Ok(Step::Failed),
+                Some(_) => (Stage::Wait(gpu, surface, made, since), 1),
+                None => return Ok(Step::Failed),
             },
             Stage::Refine(mut work) => {
                 let done = loop {

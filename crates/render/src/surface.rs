@@ -242,7 +242,7 @@ pub struct Surface {
 impl Surface {
     /// A surface whose buffers are filled by compute, in the layout that [`Upload`](crate::Upload) gives them. `shape` is the number of
     /// vertices, the vertices where face points and edge points begin (of corners what they carry, 1 for texture coordinates and 2 for colours, and 0), and the
-    /// quad, of corners the triangle, at which each buffer ends. The buffers are labelled `refined`, and made in the order of [`Surface::filled`].
+    /// quad, of corners the triangle, at which each buffer ends. The buffers are labelled `refined`, and made in this order: vertices that faces share, then those of faces.
     pub fn reserve(gpu: &Gpu, shape: &[u32]) -> Surface {
         let base = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let [count, a, b, ends @ ..] = shape else { return Surface::reserve(gpu, &[0; 3]) };

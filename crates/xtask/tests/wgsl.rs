@@ -1,7 +1,7 @@
 //! Every shader validates under naga, the translator that wgpu itself uses; without a GPU, in milliseconds.
 //!
 //! A folder's `common.wgsl` is put before the folder's other files where they need it, as the renderer does. Kernels of refinement are
-//! put together of several files with constants before them: `crates/render/tests/shaders.rs` validates each as it is used.
+//! put together of several files with constants before them: `crates/compute/tests/shaders.rs` validates each as it is used.
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -35,7 +35,8 @@ fn every_shader_validates() {
     }
     assert!(!found.is_empty());
     let mut broken = Vec::new();
-    for path in found.iter().filter(|path| !path.parent().is_some_and(|folder| folder.ends_with("refine/shaders"))) {
+    for path in found.iter().filter(|path| !path.parent().is_some_and(|folder| folder.ends_with("compute/src/shaders")))
+    {
         let source = fs::read_to_string(path).unwrap();
         let common = fs::read_to_string(path.with_file_name("common.wgsl")).unwrap_or_default();
         if let Err(alone) = validate(&source) {
