@@ -118,6 +118,11 @@ impl<'a, C: Connectivity> Apart<'a, C> {
 }
 
 impl<C: Connectivity> Connectivity for Apart<'_, C> {
+    /// What is born on a cut has three faces on either side.
+    #[inline(always)]
+    fn first_regular(&self) -> u32 {
+        self.whole.first_regular()
+    }
     #[inline(always)]
     fn vertices(&self) -> u32 {
         self.whole.vertices()

@@ -45,6 +45,11 @@ pub trait Connectivity {
     fn sure_shape(&self) -> Option<FaceShape> {
         None
     }
+    /// Vertices from here on were born on edges of triangles: regular, of six faces, or three on a boundary.
+    #[inline(always)]
+    fn first_regular(&self) -> u32 {
+        self.vertices()
+    }
     /// Number of vertices.
     fn vertices(&self) -> u32;
     /// Number of edges.

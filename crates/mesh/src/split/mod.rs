@@ -243,6 +243,10 @@ pub(crate) use on;
 
 /// The same answers with a branch each: for what need not be fast and should not be compiled three times.
 impl Connectivity for Level<'_> {
+    #[cfg(feature = "full")]
+    fn first_regular(&self) -> u32 {
+        on!(self, c => c.first_regular())
+    }
     #[inline(never)]
     fn vertices(&self) -> u32 {
         on!(self, c => c.vertices())
