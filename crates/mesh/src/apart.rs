@@ -118,11 +118,6 @@ impl<'a, C: Connectivity> Apart<'a, C> {
 }
 
 impl<C: Connectivity> Connectivity for Apart<'_, C> {
-    /// What is born on a cut has three faces on either side.
-    #[inline(always)]
-    fn first_regular(&self) -> u32 {
-        self.whole.first_regular()
-    }
     #[inline(always)]
     fn vertices(&self) -> u32 {
         self.whole.vertices()
@@ -275,7 +270,9 @@ impl<C: Connectivity, K: Sink> Sink for Blended<'_, C, K> {
 #[inline(always)]
 pub(crate) fn rules<S: Scheme, C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) -> bool {
     let (Some(creases), true) = (tags.creases, S::CREASES.is_apart()) else { return false };
-    let (level, tags) = (Apart::new(c, creases, S::CREASES == Creasing::ApartForEver), Tags { creases: None, ..tags });
+    let turns = S::CREASES == Creasing::ApartForEver;
+    let first_regular = if turns { u32::MAX } else { tags.first_regular };
+    let (level, tags) = (Apart::new(c, creases, turns), Tags { creases: None, first_regular, ..tags });
     match S::CREASES {
         Creasing::Apart => S::rules(&level, split, tags, &mut Blended { level: &level, sink }),
         _ => S::rules(&level, split, tags, sink),

@@ -41,6 +41,13 @@ pub trait Sink {
     type Row<'r>: Row;
     /// States the rules of children `first .. first + count`: `rule(i, row)` fills the row of child `first + i`.
     fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Self::Row<'r>));
+    /// Adds up the neighbours of every vertex in the child of its number, for a later pass to take from there: triangle by
+    /// triangle, which reads memory in order, where turning around vertices waits for it at every step. False where rows have
+    /// to say which neighbours. Only for vertices inside; what `triangle` gives are the corners of one of so many.
+    #[inline(always)]
+    fn rings(&mut self, _vertices: u32, _triangles: u32, _triangle: impl Fn(u32) -> [u32; 3]) -> bool {
+        false
+    }
 }
 
 /// Where a run over all passes stands.
@@ -160,6 +167,20 @@ impl Sink for Eval<'_> {
             let sum = row.sum;
             self.new[(first + i) as usize] = sum;
         }
+    }
+    #[inline(always)]
+    fn rings(&mut self, vertices: u32, triangles: u32, triangle: impl Fn(u32) -> [u32; 3]) -> bool {
+        let triangles = self.slice.take(triangles);
+        if triangles.start == 0 && !triangles.is_empty() {
+            self.new[..vertices as usize].fill([0.0; 3]);
+        }
+        for [a, b, c] in triangles.map(triangle) {
+            for (v, neighbour) in [(a, b), (b, c), (c, a)] {
+                let (sum, p) = (&mut self.new[v as usize], self.old[neighbour as usize]);
+                *sum = [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]];
+            }
+        }
+        true
     }
 }
 

@@ -45,11 +45,6 @@ pub trait Connectivity {
     fn sure_shape(&self) -> Option<FaceShape> {
         None
     }
-    /// Vertices from here on were born on edges of triangles: regular, of six faces, or three on a boundary.
-    #[inline(always)]
-    fn first_regular(&self) -> u32 {
-        self.vertices()
-    }
     /// Number of vertices.
     fn vertices(&self) -> u32;
     /// Number of edges.
@@ -367,23 +362,23 @@ impl Topology {
             vertex_half_edge[v as usize] = h as u32;
         }
         let mut twin = mate;
-        let mut edge: Vec<u32> = Vec::with_capacity(origin.len());
-        let mut edge_half_edge = Vec::with_capacity(origin.len() / 2);
-        let mut boundary = Vec::new();
+        let mut edge = vec![0; origin.len()];
+        // Which side of an edge comes first cannot be foreseen: no branch. What is written behind the last edge does not stay.
+        let mut edge_half_edge = vec![0; origin.len() + 1];
+        let (mut edges, mut boundary) = (0, Vec::new());
         for h in 0..origin.len() as u32 {
             let t = twin[h as usize];
-            if t < h {
-                edge.push(edge[t as usize]);
-                continue;
-            }
-            edge.push(edge_half_edge.len() as u32);
-            edge_half_edge.push(h);
+            edge_half_edge[edges as usize] = h;
+            edge[h as usize] = edges;
+            edge[h as usize] = edge[t.min(h) as usize];
+            edges += u32::from(t > h);
             if t == u32::MAX {
                 twin[h as usize] = !(boundary.len() as u32);
                 vertex_half_edge[origin[h as usize] as usize] = h;
                 boundary.push(h);
             }
         }
+        edge_half_edge.truncate(edges as usize);
         Topology { offsets, twin, origin, edge, face, vertex_half_edge, edge_half_edge, boundary }
     }
 }

@@ -84,6 +84,9 @@ pub(crate) struct Track {
     /// What patches make.
     #[cfg(feature = "full")]
     pub(crate) patched: Patched,
+    /// [`Tags::first_regular`] of `level`.
+    #[cfg(feature = "full")]
+    first_regular: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,6 +141,8 @@ impl Track {
             knots: Vec::new(),
             #[cfg(feature = "full")]
             patched: Patched::default(),
+            #[cfg(feature = "full")]
+            first_regular: mesh.topology.vertices(),
             listed: steps.windows(2).any(|two| two[0].split.at(0) != two[1].split.at(0)),
         };
         if FULL && let (Some(channel), true, false) = (&mesh.uv, uv, idle) {
@@ -356,7 +361,13 @@ impl Track {
             // Corners are among the pins, and no others.
             Tags { rules: Rules { boundary: Boundary::EdgeOnly, ..tags.rules }, lone: &self.lone, ..tags }
         } else {
-            Tags { lone: &self.lone, knots: if self.level == 0 { &mesh.knots } else { &self.knots }, ..tags }
+            Tags {
+                lone: &self.lone,
+                knots: if self.level == 0 { &mesh.knots } else { &self.knots },
+                #[cfg(feature = "full")]
+                first_regular: self.first_regular,
+                ..tags
+            }
         };
         let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
         let last = following.is_none();
@@ -395,9 +406,10 @@ impl Track {
             }
             Stage::Corners(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
-                let cut = split.cut(t, tags.creases);
-                let half_edges = closes.then(|| Owned::Stored(cut.connect(t, split, children as u32, tags.creases)));
-                self.source = self.behind(t, split, &cut);
+                let mut cut = split.cut(t, tags.creases);
+                self.source = self.behind(t, split, &mut cut);
+                let half_edges =
+                    closes.then(|| Owned::Stored(cut.clone().connect(t, split, children as u32, tags.creases)));
                 (self.offsets, self.corners, self.kinds) = (cut.offsets, cut.corners, cut.kinds);
                 if closes {
                     self.knots = split.knots(level, tags.knots, &self.lone);
@@ -424,9 +436,9 @@ impl Track {
             }
             Stage::HalfEdges(_) if FULL && split.stores() => {
                 let Level::Base(t) = level else { unreachable!("a step says when it needs stored half-edges") };
-                let cut = split.cut(t, tags.creases);
+                let mut cut = split.cut(t, tags.creases);
+                self.source = self.behind(t, split, &mut cut);
                 let stored = cut.connect(t, split, children as u32, tags.creases);
-                self.source = self.behind(t, split, &cut);
                 self.knots = split.knots(level, tags.knots, &self.lone);
                 self.follow(mesh, plan, split, following);
                 self.advance(split);
@@ -449,8 +461,8 @@ impl Track {
     }
 
     /// What is behind the faces that a stored level is cut into.
-    fn behind(&self, t: &Topology, split: Split, cut: &Cut) -> Vec<u32> {
-        let mut source = holes::descend(&self.source, cut.source.clone());
+    fn behind(&self, t: &Topology, split: Split, cut: &mut Cut) -> Vec<u32> {
+        let mut source = holes::descend(&self.source, std::mem::take(&mut cut.source));
         holes::hide_between(t, split, &self.source, cut, &mut source);
         source
     }
@@ -465,6 +477,10 @@ impl Track {
     }
 
     fn advance(&mut self, split: Split) {
+        #[cfg(feature = "full")]
+        if !split.makes_regular(&self.counts, self.creases.is_some()) {
+            self.first_regular = u32::MAX;
+        }
         self.level += 1;
         self.before = self.counts;
         self.counts = split.counts(self.counts).unwrap_or_default();

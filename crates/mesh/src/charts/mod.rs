@@ -290,7 +290,7 @@ pub(crate) fn carry(
     let mate = |h: u32| Some(child.twin(h)).filter(|&t| !is_boundary(t) && joined(h, t)).unwrap_or(NONE);
     let mates: Vec<u32> = (0..child.half_edges()).map(mate).collect();
     let vertices = child.vertices() as usize;
-    let (topology, _) = Topology::assemble(cut.offsets, child.origins(), vertices, &mates);
+    let (topology, _) = Topology::assemble(child.offsets().to_vec(), child.origins(), vertices, &mates);
     let place = |v: u32| places[topology.vertex_half_edge(v) as usize];
     let values: Vec<[f32; 4]> = (0..topology.vertices()).map(|v| find(place(v))).collect();
     let pins = if split.keeps_vertices() {

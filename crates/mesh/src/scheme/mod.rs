@@ -209,12 +209,17 @@ pub struct Tags<'a> {
     pub size: f64,
     /// The scheme's parameters: [`Params::of`].
     pub params: [f64; MOST_PARAMS],
+    /// Vertices from here on were born in steps of triangles and are regular: of six faces, or three on a boundary or either
+    /// side of a crease. No vertex at all where that is not known.
+    pub first_regular: u32,
 }
 
 impl Tags<'_> {
     /// Tags of a mesh without marks, at level 0.
     pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        Tags { rules, step: 0, sharp: &[], joined: &[], creases: None, lone: &[], knots: &[], size: 0.0, params }
+        let first_regular = u32::MAX;
+        let (step, size, creases) = (0, 0.0, None);
+        Tags { rules, step, sharp: &[], joined: &[], creases, lone: &[], knots: &[], size, params, first_regular }
     }
 
     /// Whether `v`, which starts its turn at `start`, is kept.

@@ -15,7 +15,7 @@
 //! Beyond a boundary, wings are reflections, which at a regular boundary vertex (three faces) keeps linear functions
 //! linear; the boundary is the four-point curve. Tagged edges follow the boundary's rules from both sides, as in the notes, and
 //! vertices beside a crease those beside a boundary ([`crate::apart`]). C1 everywhere. Cost: about 13 ns an output face, more beside
-//! extraordinary vertices; after the first step only the mesh's own vertices can be such ([`Connectivity::first_regular`]).
+//! extraordinary vertices; after the first step only the mesh's own vertices can be such ([`Tags::first_regular`]).
 
 use super::butterfly::{eight_points, four_points};
 use super::{Accepts, Creasing, Family, Info, Scheme, Tags};
@@ -54,7 +54,8 @@ impl Scheme for ModifiedButterfly {
             if is_boundary(twin) {
                 return row.apart(|row| four_points(c, h, W, tags, row));
             }
-            match (is_irregular(c, h), is_irregular(c, twin)) {
+            let is_irregular = |h: u32| c.origin(h) < tags.first_regular && Ring::of(c, h).is_irregular();
+            match (is_irregular(h), is_irregular(twin)) {
                 (false, false) => eight_points(c, h, W, row),
                 (true, false) => row.apart(|row| Ring::of(c, h).rule(c, 1.0, row)),
                 (false, true) => row.apart(|row| Ring::of(c, twin).rule(c, 1.0, row)),
@@ -66,12 +67,6 @@ impl Scheme for ModifiedButterfly {
         });
         sink.pass(0, c.vertices(), |v, row| row.vertex(v, 1.0));
     }
-}
-
-/// Whether the vertex that `h` leaves has a rule of its own.
-#[inline(always)]
-fn is_irregular<C: Connectivity>(c: &C, h: u32) -> bool {
-    c.origin(h) < c.first_regular() && Ring::of(c, h).is_irregular()
 }
 
 /// A vertex seen along one of its edges.
@@ -160,7 +155,7 @@ mod tests {
     use crate::scheme::{Boundary, Tags, scheme};
     use crate::sink::Cursor;
     use crate::split::{Level, Split};
-    use crate::topology::{Connectivity, Topology};
+    use crate::topology::Connectivity;
     use crate::{Mesh, SHAPES, Weld, bounds, refine, triangulate_soup};
     use std::sync::Arc;
 
@@ -187,19 +182,16 @@ mod tests {
                 owned = Some(below);
             }
             let level = owned.as_ref().map_or(Level::Base(&mesh.topology), Owned::view);
-            assert_eq!(level.first_regular(), mesh.topology.vertices());
-            let stored = Topology::of(&level);
-            assert_eq!(stored.first_regular(), stored.vertices());
             // Somewhere else, so that no two rules agree by chance.
             points.iter_mut().enumerate().for_each(|(v, p)| p[v % 3] += 0.01 * ((v * v) % 7) as f32);
-            let of = |level: &Level<'_>| {
-                let tags = Tags { creases: creases.as_ref(), ..Tags::new(plan.rules, [0.0; _]) };
+            let of = |first_regular: u32| {
+                let tags = Tags { creases: creases.as_ref(), first_regular, ..Tags::new(plan.rules, [0.0; _]) };
                 let mut new = vec![[0.0; 3]; (level.vertices() + level.edges()) as usize];
                 let mut cursor = Cursor::default();
-                while !scheme.eval((level, Split::Triangle, tags), &points, &mut new, &mut cursor, &mut { 1000 }) {}
+                while !scheme.eval((&level, Split::Triangle, tags), &points, &mut new, &mut cursor, &mut { 1000 }) {}
                 new
             };
-            let (known, counted) = (of(&level), of(&Level::Base(&stored)));
+            let (known, counted) = (of(mesh.topology.vertices()), of(u32::MAX));
             let [low, high] = bounds(&points);
             let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f32::max);
             for (v, (p, q)) in known.iter().zip(&counted).enumerate() {

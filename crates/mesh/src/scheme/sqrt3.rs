@@ -45,14 +45,24 @@ impl Scheme for Sqrt3 {
         sink.pass(old, faces, |f, row| {
             let corners = c.face_half_edges(f);
             if let Some(h) = corners.clone().find(|&h| trisect && c.is_rim(h)) {
-                return third(c, h, false, tags, row);
+                return row.apart(|row| third(c, h, false, tags, row));
             }
             corners.for_each(|h| row.vertex(c.origin(h), 1.0 / 3.0));
         });
         sink.pass(old + faces, if trisect { c.boundary_half_edges() } else { 0 }, |r, row| {
             third(c, c.boundary_half_edge(r), true, tags, row);
         });
+        let triangle = |f: u32| {
+            let h = c.face_half_edges(f).start;
+            [c.origin(h), c.origin(h + 1), c.origin(h + 2)]
+        };
+        let closed = c.boundary_half_edges() == 0 && tags.first_regular < old;
+        let summed = closed && sink.rings(old, faces, triangle);
         sink.pass(0, old, |v, row| {
+            if summed && v >= tags.first_regular {
+                row.child(v, SIX[1]);
+                return row.vertex(v, SIX[0]);
+            }
             let start = c.vertex_half_edge(v);
             let on_rim = is_boundary(c.twin(start));
             if tags.is_sharp(c, v) || (on_rim && !trisect) {
@@ -68,14 +78,22 @@ impl Scheme for Sqrt3 {
                     n += 1;
                 });
                 // Most vertices have six neighbours.
-                let k = f64::from(n);
-                let cos = if n == 6 { 0.5 } else { libm::cos(2.0 * std::f64::consts::PI / k) };
-                let a = (4.0 - 2.0 * cos) / 9.0;
-                row.scale(a / k);
-                row.vertex(v, 1.0 - a);
+                let [own, ring] = if n == 6 { SIX } else { weights(n) };
+                row.scale(ring);
+                row.vertex(v, own);
             }
         });
     }
+}
+
+/// [`weights`] of most vertices.
+const SIX: [f64; 2] = [2.0 / 3.0, 1.0 / 18.0];
+
+/// The weights of a vertex of `n` neighbours and of each of these.
+#[inline(never)]
+fn weights(n: u32) -> [f64; 2] {
+    let a = (4.0 - 2.0 * libm::cos(2.0 * std::f64::consts::PI / f64::from(n))) / 9.0;
+    [1.0 - a, a / f64::from(n)]
 }
 
 /// The first or the second point that cuts boundary half-edge `h` in three. A corner's curve goes straight on behind it.

@@ -35,6 +35,8 @@ pub use triangle::TriangleLevel;
 use crate::apart::Apart;
 use crate::crease::Creases;
 use crate::topology::Connectivity;
+#[cfg(feature = "full")]
+use crate::topology::Counts;
 
 /// The splits there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +122,17 @@ impl Split {
         !matches!(self, Split::Dual { .. } | Split::Sqrt3 { .. } | Split::MidEdge { .. })
     }
 
+    /// Whether vertices keep their place and valence in this split of a level of triangles, and new ones are regular:
+    /// [`crate::scheme::Tags::first_regular`].
+    #[cfg(feature = "full")]
+    pub(crate) fn makes_regular(self, level: &Counts, creased: bool) -> bool {
+        match self {
+            Split::Triangle => true,
+            Split::Sqrt3 { .. } => level.boundary == 0 && !creased,
+            _ => false,
+        }
+    }
+
     /// What only some have a child for ([`crate::scheme::Tags::lone`]): of the dual split the corners of `c` with two images,
     /// by their half-edges, children from `half_edges()` on; of the mid-edge split the corners that are kept, by their
     /// half-edges, children from `edges()` on; of the mixed split the faces that are no triangles, children from
@@ -201,9 +214,19 @@ impl Split {
         }
     }
 
+    /// The same, as simple as `c` lets it be: without a rim there is nothing to cut in three.
+    fn on(self, c: &crate::Topology, creases: Option<&Creases>) -> Split {
+        match self {
+            Split::Sqrt3 { trisect } => {
+                Split::Sqrt3 { trisect: trisect && (c.boundary_half_edges() > 0 || creases.is_some()) }
+            }
+            other => other,
+        }
+    }
+
     /// The faces of the next level, for splits that store it. `c` is a stored level, `creases` its own.
     pub(crate) fn cut(self, c: &crate::Topology, creases: Option<&Creases>) -> stored::Cut {
-        match self {
+        match self.on(c, creases) {
             _ if !crate::FULL => unreachable!("no scheme of this build stores levels"),
             Split::Sqrt3 { trisect } => match creases {
                 Some(creases) => stored::sqrt3(&Apart::turned(c, creases), c, trisect),
@@ -243,10 +266,6 @@ pub(crate) use on;
 
 /// The same answers with a branch each: for what need not be fast and should not be compiled three times.
 impl Connectivity for Level<'_> {
-    #[cfg(feature = "full")]
-    fn first_regular(&self) -> u32 {
-        on!(self, c => c.first_regular())
-    }
     #[inline(never)]
     fn vertices(&self) -> u32 {
         on!(self, c => c.vertices())

@@ -74,14 +74,8 @@ impl Cut {
     }
 
     /// The half-edges of these faces, `vertices` in all.
-    pub fn connect(
-        &self,
-        parent: &Topology,
-        split: super::Split,
-        vertices: u32,
-        creases: Option<&Creases>,
-    ) -> Topology {
-        let mate = match (split, creases) {
+    pub fn connect(self, parent: &Topology, split: super::Split, vertices: u32, creases: Option<&Creases>) -> Topology {
+        let mate = match (split.on(parent, creases), creases) {
             (super::Split::Sqrt3 { trisect }, Some(creases)) => {
                 let apart = Apart::turned(parent, creases);
                 let mut mate = mates(&apart, trisect);
@@ -103,7 +97,7 @@ impl Cut {
             (super::Split::NWay { n, triangles }, _) => super::n_way::mates(parent, n, triangles),
             _ => self.dual_mates(parent, &split.lone(parent)),
         };
-        Topology::manifold(self.offsets.clone(), self.corners.clone(), vertices, mate)
+        Topology::manifold(self.offsets, self.corners, vertices, mate)
     }
 }
 
@@ -130,7 +124,7 @@ impl Cut {
             join(&mut mate, side, along(corner[1]));
             join(&mut mate, side + 2, along(corner[3]));
         }
-        for f in (parent.faces() + edges) as usize..self.source.len() {
+        for f in (parent.faces() + edges) as usize..self.offsets.len() - 1 {
             let (from, to) = (self.offsets[f], self.offsets[f + 1]);
             for side in from..to {
                 let g = self.corners[if side + 1 == to { from } else { side + 1 } as usize];
@@ -248,9 +242,7 @@ pub(crate) fn sqrt3_thirds(c: &impl Connectivity, h: u32, trisect: bool) -> Vec<
 
 /// The triangles of the sqrt3 split, one a half-edge and in their order. `c` is `whole`, or that seen cut along its creases.
 pub(crate) fn sqrt3(c: &impl Connectivity, whole: &Topology, trisect: bool) -> Cut {
-    let h = c.half_edges();
-    let mut cut = Cut::with_room(h as usize, 3 * h as usize, false);
-    let (old, faces) = (c.vertices(), c.faces());
+    let (old, faces, triangles) = (c.vertices(), c.faces(), c.half_edges());
     // What half-edge h takes for the centre of its face.
     let centre = |h: u32| match c.twin(c.prev(h)) {
         t if trisect && is_boundary(t) => match whole.twin(c.prev(h)) {
@@ -259,25 +251,29 @@ pub(crate) fn sqrt3(c: &impl Connectivity, whole: &Topology, trisect: bool) -> C
         },
         _ => old + c.face(h),
     };
-    for h in 0..h {
-        let (v, t) = (c.origin(h), c.twin(h));
-        cut.corners.extend(match (is_boundary(t), trisect) {
-            (false, _) => [v, centre(t), centre(h)],
-            (true, false) => [v, c.origin(c.next(h)), centre(h)],
-            (true, true) => [centre(h), centre(c.next(h)), c.origin(c.prev(h))],
-        });
-        cut.close(c.face(h), None);
+    let mut corners = Vec::with_capacity(3 * triangles as usize);
+    for f in 0..faces {
+        for h in c.face_half_edges(f) {
+            let (v, t) = (c.origin(h), c.twin(h));
+            corners.extend_from_slice(&match (is_boundary(t), trisect) {
+                (false, false) => [v, old + c.face(t), old + f],
+                (false, true) => [v, centre(t), centre(h)],
+                (true, false) => [v, c.origin(c.next(h)), old + f],
+                (true, true) => [centre(h), centre(c.next(h)), c.origin(c.prev(h))],
+            });
+        }
     }
-    cut
+    let offsets = (0..=triangles).map(|h| 3 * h).collect();
+    Cut { offsets, corners, source: (0..triangles).map(|h| h / 3).collect(), kinds: Vec::new() }
 }
 
 /// The twins of [`sqrt3`]'s triangles.
 fn mates(c: &impl Connectivity, trisect: bool) -> Vec<u32> {
-    let mut mate = vec![UNMATCHED; 3 * c.half_edges() as usize];
-    for h in 0..c.half_edges() {
+    let mut mate = Vec::with_capacity(3 * c.half_edges() as usize);
+    for h in (0..c.faces()).flat_map(|f| c.face_half_edges(f)) {
         let (n, p, t) = (c.next(h), c.prev(h), c.twin(h));
         let (before, after) = (c.twin(p), c.twin(n));
-        let m = &mut mate[3 * h as usize..3 * h as usize + 3];
+        let mut m = [UNMATCHED; 3];
         match (is_boundary(t), trisect) {
             (false, true) => {
                 if is_boundary(c.twin(c.prev(t))) {
@@ -305,6 +301,7 @@ fn mates(c: &impl Connectivity, trisect: bool) -> Vec<u32> {
                 m[2] = if is_boundary(before) { 3 * p + 1 } else { 3 * before };
             }
         }
+        mate.extend_from_slice(&m);
     }
     mate
 }

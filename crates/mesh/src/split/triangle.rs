@@ -23,9 +23,6 @@ pub struct TriangleLevel {
     edges: u32,
     /// Half-edges of the parent: three times this is where the middle triangles begin.
     parent: u32,
-    /// See [`Connectivity::first_regular`].
-    #[cfg(feature = "full")]
-    first_regular: u32,
 }
 
 impl TriangleLevel {
@@ -40,8 +37,6 @@ impl TriangleLevel {
             boundary: vec![0; parent.boundary_half_edges() as usize * 2],
             edges: 2 * parent.edges() + parent.half_edges(),
             parent: parent.half_edges(),
-            #[cfg(feature = "full")]
-            first_regular: parent.first_regular(),
         }
     }
 
@@ -121,11 +116,6 @@ impl Connectivity for TriangleLevel {
     #[inline(always)]
     fn sure_shape(&self) -> Option<super::FaceShape> {
         Some(super::FaceShape::Triangles)
-    }
-    #[cfg(feature = "full")]
-    #[inline(always)]
-    fn first_regular(&self) -> u32 {
-        self.first_regular
     }
     #[inline(always)]
     fn vertices(&self) -> u32 {
