@@ -3,7 +3,7 @@
 //! ```text
 //!   quad split ─> Quads ──┐                  filled in slices, two words a half-edge
 //!   triangle   ─> Triangles ─> stored_for    in full, where the next scheme needs that
-//!   others     ─> Stored                     come whole
+//!   others     ─> Stored, Dual               come whole
 //! ```
 //!
 //! Cost: about 3 ns a half-edge.
@@ -11,6 +11,8 @@
 use crate::FULL;
 use crate::crease::Creases;
 use crate::plan::Step;
+#[cfg(feature = "full")]
+use crate::split::DualLevel;
 use crate::split::{FaceShape, Level, QuadLevel, Split, TriangleLevel, on};
 use crate::topology::{Connectivity, Topology};
 
@@ -20,6 +22,8 @@ pub(crate) enum Owned {
     Quads(QuadLevel),
     Triangles(TriangleLevel),
     Stored(Topology),
+    #[cfg(feature = "full")]
+    Dual(DualLevel),
 }
 
 impl Owned {
@@ -40,6 +44,8 @@ impl Owned {
             Owned::Quads(q) => Level::Quads(q),
             Owned::Triangles(t) => Level::Triangles(t),
             Owned::Stored(t) => Level::Base(t),
+            #[cfg(feature = "full")]
+            Owned::Dual(d) => Level::Dual(d),
         }
     }
 
@@ -50,6 +56,8 @@ impl Owned {
             Owned::Stored(t) => Owned::Stored(t),
             Owned::Quads(q) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&q)),
             Owned::Triangles(t) if next.is_some_and(|s| s.stored) => Owned::Stored(Topology::of(&t)),
+            #[cfg(feature = "full")]
+            Owned::Dual(d) if !next.is_some_and(|s| s.split.is_dual()) => Owned::Stored(Topology::of(&d)),
             implicit => implicit,
         }
     }

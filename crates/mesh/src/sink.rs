@@ -41,6 +41,16 @@ pub trait Sink {
     type Row<'r>: Row;
     /// States the rules of children `first .. first + count`: `rule(i, row)` fills the row of child `first + i`.
     fn pass(&mut self, first: u32, count: u32, rule: impl for<'r> Fn(u32, &mut Self::Row<'r>));
+    /// A pass that states the rules of four children of every quad, from `first` on: of the corner k places on one has
+    /// `weights[k]`. What `quad` gives are the corners of one of so many.
+    #[inline(always)]
+    fn quads(&mut self, first: u32, quads: u32, quad: impl Fn(u32) -> [u32; 4], weights: [f64; 4]) {
+        self.pass(first, 4 * quads, |i, row| {
+            let mut corners = quad(i / 4);
+            corners.rotate_left((i % 4) as usize);
+            corners.iter().zip(weights).for_each(|(&v, weight)| row.vertex(v, weight));
+        });
+    }
     /// Adds up the neighbours of every vertex in the child of its number, for a later pass to take from there: triangle by
     /// triangle, which reads memory in order, where turning around vertices waits for it at every step. False where rows have
     /// to say which neighbours. Only for vertices inside; what `triangle` gives are the corners of one of so many.
@@ -166,6 +176,23 @@ impl Sink for Eval<'_> {
             rule(i, &mut row);
             let sum = row.sum;
             self.new[(first + i) as usize] = sum;
+        }
+    }
+    /// The same sums, of points that are fetched once a quad.
+    #[inline(always)]
+    fn quads(&mut self, first: u32, quads: u32, quad: impl Fn(u32) -> [u32; 4], weights: [f64; 4]) {
+        let weights = weights.map(|weight| weight as f32);
+        for i in self.slice.take(quads) {
+            let mut points = quad(i).map(|v| self.old[v as usize]);
+            let child = (first + 4 * i) as usize;
+            for new in &mut self.new[child..child + 4] {
+                let mut sum = [0.0; 3];
+                for (p, w) in points.iter().zip(weights) {
+                    sum = [sum[0] + w * p[0], sum[1] + w * p[1], sum[2] + w * p[2]];
+                }
+                *new = sum;
+                points.rotate_left(1);
+            }
         }
     }
     #[inline(always)]

@@ -45,6 +45,11 @@ pub trait Connectivity {
     fn sure_shape(&self) -> Option<FaceShape> {
         None
     }
+    /// Faces from here on are quads away from any boundary, as far as the type says so.
+    #[inline(always)]
+    fn first_quad(&self) -> u32 {
+        self.faces()
+    }
     /// Number of vertices.
     fn vertices(&self) -> u32;
     /// Number of edges.

@@ -12,6 +12,8 @@
 
 // Types of fields and calls are left out where there is nothing: even an empty box has code that drops it.
 #[cfg(feature = "full")]
+mod dual;
+#[cfg(feature = "full")]
 mod patched;
 
 #[cfg(feature = "full")]
@@ -372,6 +374,10 @@ impl Track {
         let children = split.counts(self.counts).unwrap_or_default().vertices as usize;
         let last = following.is_none();
         let closes = last && !self.uv && plan.closes();
+        #[cfg(feature = "full")]
+        if matches!(self.stage, Stage::HalfEdges(_) | Stage::Corners(_)) && self.is_arithmetic(mesh, steps) {
+            return Some(self.dual(level, steps, closes));
+        }
         match &mut self.stage {
             Stage::Points(cursor) => {
                 zeroed(&mut self.new_points, children);

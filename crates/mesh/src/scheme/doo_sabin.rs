@@ -91,7 +91,11 @@ pub(crate) fn weight(midpoint: bool, k: usize, j: usize) -> f64 {
 fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, weight: fn(usize, usize) -> f64) {
     // Of faces of 3 to 8 corners, so that cosines are not taken for every corner.
     let table: [[f64; 8]; 6] = from_fn(|i| from_fn(|j| if j < i + 3 { weight(i + 3, j) } else { 0.0 }));
-    sink.pass(0, c.half_edges(), |h, row| {
+    let (odd, mut first) = (c.first_quad(), c.half_edges());
+    if odd < c.faces() {
+        first = c.face_half_edges(odd).start;
+    }
+    sink.pass(0, first, |h, row| {
         let face = c.face_half_edges(c.face(h));
         let last = if h == face.start { face.end - 1 } else { h - 1 };
         let (after, before) = (is_boundary(c.twin(h)), is_boundary(c.twin(last)));
@@ -109,6 +113,8 @@ fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, weight:
             (after, _) => on_curve(row, c.origin(h), c.origin(if after && !before { c.next(h) } else { c.prev(h) })),
         }
     });
+    let quad = |i: u32| from_fn(|k| c.origin(first + 4 * i + k as u32));
+    sink.quads(first, c.faces() - odd, quad, from_fn(|j| weight(4, j)));
     sink.pass(c.half_edges(), tags.lone.len() as u32, |i, row| {
         let h = tags.lone[i as usize];
         on_curve(row, c.origin(h), c.origin(c.next(h)));

@@ -351,6 +351,8 @@ fn eval<S: Scheme>(level: &Level<'_>, split: Split, tags: Tags<'_>, sink: &mut E
         (Level::Triangles(c), accepts) if implicit && accepts != Accepts::Polygons => {
             rules::<S, _, _>(*c, split, tags, sink)
         }
+        #[cfg(feature = "full")]
+        (Level::Dual(c), _) if matches!(S::INFO.family, Family::Dual) => rules::<S, _, _>(*c, split, tags, sink),
         _ => unreachable!("a step says when it needs stored half-edges"),
     }
 }

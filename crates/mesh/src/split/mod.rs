@@ -19,6 +19,8 @@
 //! Ids of vertices are stable prefixes: vertex 17 of level 0 is vertex 17 of every level. Cost: about 3 ns a half-edge.
 
 mod counts;
+#[cfg(feature = "full")]
+pub(crate) mod dual;
 pub(crate) mod mid_edge;
 pub(crate) mod mixed;
 pub(crate) mod n_way;
@@ -27,6 +29,8 @@ mod quad;
 pub(crate) mod stored;
 mod triangle;
 
+#[cfg(feature = "full")]
+pub use dual::DualLevel;
 pub use n_way::Triangles;
 pub use quad::QuadLevel;
 pub use stored::FaceKind;
@@ -109,6 +113,12 @@ impl Split {
     /// Whether levels after this split store their half-edges in full, as level 0 does.
     pub fn stores(self) -> bool {
         !matches!(self, Split::Quad | Split::Triangle)
+    }
+
+    /// Whether vertices are split, whatever happens on a rim.
+    #[cfg(feature = "full")]
+    pub(crate) fn is_dual(self) -> bool {
+        matches!(self, Split::Dual { .. })
     }
 
     /// Whether the vertices of a level are the first of the next.
@@ -250,80 +260,97 @@ pub enum Level<'a> {
     Quads(&'a QuadLevel),
     /// After a triangle split.
     Triangles(&'a TriangleLevel),
+    /// After a second dual split where there is no rim.
+    #[cfg(feature = "full")]
+    Dual(&'a DualLevel),
 }
 
-/// Runs `$body` with the connectivity behind a level, compiled for its type.
+/// Runs `$body` with the connectivity behind a level, compiled for its type; but for dual levels, which are met by dual steps
+/// alone.
 macro_rules! on {
     ($level:expr, $c:ident => $body:expr) => {
         match $level {
             $crate::split::Level::Base($c) => $body,
             $crate::split::Level::Quads($c) => $body,
             $crate::split::Level::Triangles($c) => $body,
+            #[cfg(feature = "full")]
+            $crate::split::Level::Dual(_) => unreachable!("a step says when it needs stored half-edges"),
         }
     };
 }
 pub(crate) use on;
 
+/// [`on`], dual levels among them.
+macro_rules! any {
+    ($level:expr, $c:ident => $body:expr) => {
+        match $level {
+            #[cfg(feature = "full")]
+            Level::Dual($c) => $body,
+            other => on!(other, $c => $body),
+        }
+    };
+}
+
 /// The same answers with a branch each: for what need not be fast and should not be compiled three times.
 impl Connectivity for Level<'_> {
     #[inline(never)]
     fn vertices(&self) -> u32 {
-        on!(self, c => c.vertices())
+        any!(self, c => c.vertices())
     }
     #[inline(never)]
     fn edges(&self) -> u32 {
-        on!(self, c => c.edges())
+        any!(self, c => c.edges())
     }
     #[inline(never)]
     fn faces(&self) -> u32 {
-        on!(self, c => c.faces())
+        any!(self, c => c.faces())
     }
     #[inline(never)]
     fn half_edges(&self) -> u32 {
-        on!(self, c => c.half_edges())
+        any!(self, c => c.half_edges())
     }
     #[inline(never)]
     fn boundary_half_edges(&self) -> u32 {
-        on!(self, c => c.boundary_half_edges())
+        any!(self, c => c.boundary_half_edges())
     }
     #[inline(never)]
     fn boundary_half_edge(&self, rank: u32) -> u32 {
-        on!(self, c => c.boundary_half_edge(rank))
+        any!(self, c => c.boundary_half_edge(rank))
     }
     #[inline(never)]
     fn face_half_edges(&self, f: u32) -> std::ops::Range<u32> {
-        on!(self, c => c.face_half_edges(f))
+        any!(self, c => c.face_half_edges(f))
     }
     #[inline(never)]
     fn face(&self, h: u32) -> u32 {
-        on!(self, c => c.face(h))
+        any!(self, c => c.face(h))
     }
     #[inline(never)]
     fn next(&self, h: u32) -> u32 {
-        on!(self, c => c.next(h))
+        any!(self, c => c.next(h))
     }
     #[inline(never)]
     fn prev(&self, h: u32) -> u32 {
-        on!(self, c => c.prev(h))
+        any!(self, c => c.prev(h))
     }
     #[inline(never)]
     fn twin(&self, h: u32) -> u32 {
-        on!(self, c => c.twin(h))
+        any!(self, c => c.twin(h))
     }
     #[inline(never)]
     fn origin(&self, h: u32) -> u32 {
-        on!(self, c => c.origin(h))
+        any!(self, c => c.origin(h))
     }
     #[inline(never)]
     fn edge(&self, h: u32) -> u32 {
-        on!(self, c => c.edge(h))
+        any!(self, c => c.edge(h))
     }
     #[inline(never)]
     fn vertex_half_edge(&self, v: u32) -> u32 {
-        on!(self, c => c.vertex_half_edge(v))
+        any!(self, c => c.vertex_half_edge(v))
     }
     #[inline(never)]
     fn edge_half_edge(&self, e: u32) -> u32 {
-        on!(self, c => c.edge_half_edge(e))
+        any!(self, c => c.edge_half_edge(e))
     }
 }

@@ -151,6 +151,9 @@ impl Cut {
 
 /// The half-edges that leave boundary vertices of one face, in order: where dual gives two images if corners are rounded.
 pub(crate) fn lone_corners(c: &impl Connectivity) -> Vec<u32> {
+    if c.boundary_half_edges() == 0 {
+        return Vec::new();
+    }
     (0..c.half_edges()).filter(|&h| is_boundary(c.twin(h)) && is_boundary(c.twin(c.prev(h)))).collect()
 }
 
