@@ -221,6 +221,9 @@ impl Job {
                 own = next_own;
                 let values = u64::from(i == 0) + u64::from(wide);
                 total += values * next.vertices;
+                if FULL && i == 0 && matches!(step.split, Split::Sqrt3 { .. }) {
+                    total += c.faces; // Sums around vertices.
+                }
                 if !step.split.stores() {
                     total += c.faces;
                     if level < plan.level || (i == 0 && plan.closes()) {

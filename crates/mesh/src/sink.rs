@@ -181,18 +181,20 @@ impl Sink for Eval<'_> {
     /// The same sums, of points that are fetched once a quad.
     #[inline(always)]
     fn quads(&mut self, first: u32, quads: u32, quad: impl Fn(u32) -> [u32; 4], weights: [f64; 4]) {
-        let weights = weights.map(|weight| weight as f32);
-        for i in self.slice.take(quads) {
-            let mut points = quad(i).map(|v| self.old[v as usize]);
+        let [w0, w1, w2, w3] = weights.map(|weight| weight as f32);
+        let one = |a: f32, b: f32, c: f32, d: f32| 0.0 + w0 * a + w1 * b + w2 * c + w3 * d;
+        let sum = |a: [f32; 3], b: [f32; 3], c: [f32; 3], d: [f32; 3]| {
+            [one(a[0], b[0], c[0], d[0]), one(a[1], b[1], c[1], d[1]), one(a[2], b[2], c[2], d[2])]
+        };
+        let quads = self.slice.take(quads);
+        *self.slice.quota = self.slice.quota.saturating_sub(3 * quads.len());
+        for i in quads {
+            let [a, b, c, d] = quad(i);
+            let (a, b) = (self.old[a as usize], self.old[b as usize]);
+            let (c, d) = (self.old[c as usize], self.old[d as usize]);
             let child = (first + 4 * i) as usize;
-            for new in &mut self.new[child..child + 4] {
-                let mut sum = [0.0; 3];
-                for (p, w) in points.iter().zip(weights) {
-                    sum = [sum[0] + w * p[0], sum[1] + w * p[1], sum[2] + w * p[2]];
-                }
-                *new = sum;
-                points.rotate_left(1);
-            }
+            let new = [sum(a, b, c, d), sum(b, c, d, a), sum(c, d, a, b), sum(d, a, b, c)];
+            self.new[child..child + 4].copy_from_slice(&new);
         }
     }
     #[inline(always)]

@@ -113,7 +113,10 @@ fn images<C: Connectivity, K: Sink>(c: &C, tags: Tags<'_>, sink: &mut K, weight:
             (after, _) => on_curve(row, c.origin(h), c.origin(if after && !before { c.next(h) } else { c.prev(h) })),
         }
     });
-    let quad = |i: u32| from_fn(|k| c.origin(first + 4 * i + k as u32));
+    let quad = |i: u32| {
+        let h = first + 4 * i;
+        [c.origin(h), c.origin(h + 1), c.origin(h + 2), c.origin(h + 3)]
+    };
     sink.quads(first, c.faces() - odd, quad, from_fn(|j| weight(4, j)));
     sink.pass(c.half_edges(), tags.lone.len() as u32, |i, row| {
         let h = tags.lone[i as usize];

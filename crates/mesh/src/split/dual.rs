@@ -102,7 +102,7 @@ impl DualLevel {
         }
         for v in 0..vertices {
             let [k0, k1, k2, k3] = spokes(c, v);
-            level.twin.extend_from_slice(&[k1, k2, k3, k0].map(|k| along(k) + 1));
+            level.twin.extend_from_slice(&[along(k1) + 1, along(k2) + 1, along(k3) + 1, along(k0) + 1]);
         }
         level
     }
@@ -203,5 +203,45 @@ impl Connectivity for DualLevel {
     fn edge_half_edge(&self, e: u32) -> u32 {
         let parent = self.vertices();
         if e < parent { e } else { parent + 2 * (e - parent) + 1 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::split::{Level, Split, stored};
+    use crate::topology::{Topology, validate};
+    use crate::{Mesh, SHAPES, Weld};
+
+    /// Arithmetic gives the half-edges and faces that the split gives in general.
+    #[test]
+    fn levels_are_those_of_the_general_split() {
+        let split = Split::Dual { rounded: false };
+        let mut closed = 0;
+        for shape in SHAPES {
+            let (mesh, _) = Mesh::build(&(shape.build)(), Weld::Off).unwrap();
+            let counts = mesh.counts();
+            if counts.boundary > 0 || counts.digons > 0 {
+                continue;
+            }
+            closed += 1;
+            let general = |t: &Topology| split.cut(t, None).connect(t, split, split.children(t), None);
+            let first = general(&mesh.topology);
+            assert_eq!(DualLevel::cut(&first), stored::dual(&first, &[]), "{}", shape.name);
+            assert_eq!(parents(&first), stored::dual(&first, &[]).source, "{}", shape.name);
+            let (mut level, mut expected) = (DualLevel::below(&first), general(&first));
+            for step in 2..4 {
+                let what = format!("{}, level {step}", shape.name);
+                assert_eq!(Topology::of(&level), expected, "{what}");
+                validate(&Level::Dual(&level)).unwrap();
+                let around = (0..level.half_edges()).map(|h| (level.next(h), level.prev(h), level.face(h)));
+                let theirs = (0..level.half_edges()).map(|h| (expected.next(h), expected.prev(h), expected.face(h)));
+                assert!(around.eq(theirs), "{what}");
+                assert_eq!(DualLevel::cut(&level), stored::dual(&expected, &[]), "{what}");
+                assert_eq!(level.counts(), expected.counts(), "{what}");
+                (level, expected) = (DualLevel::below(&level), general(&expected));
+            }
+        }
+        assert!(closed > 5, "only {closed} models have no rim");
     }
 }
