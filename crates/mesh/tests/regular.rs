@@ -79,6 +79,7 @@ fn changes_of_scheme_agree() {
         let (soup, _) = triangulate_soup(&soup);
         for plan in [
             with("sqrt3", &[("modified-butterfly", 2), ("sqrt3", 3)], 5),
+            with("sqrt3", &[("modified-butterfly", 3)], 4),
             with("modified-butterfly", &[("sqrt3", 1), ("loop", 3)], 4),
             with("sqrt3", &[("doo-sabin", 2)], 4),
         ] {

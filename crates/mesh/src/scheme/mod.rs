@@ -29,6 +29,7 @@ mod poke;
 mod quad_triangle;
 mod rules;
 mod sqrt3;
+mod tags;
 mod tri_to_quad;
 
 pub use butterfly::Butterfly;
@@ -48,6 +49,7 @@ pub use poke::Poke;
 pub use quad_triangle::QuadTriangle;
 pub use rules::{Boundary, Decay, FaceVarying, Rules, TriangleRule};
 pub use sqrt3::Sqrt3;
+pub use tags::Tags;
 pub use tri_to_quad::TriToQuad;
 
 pub(crate) use doo_sabin::weight as doo_sabin_weight;
@@ -55,7 +57,7 @@ pub(crate) use loop_::weight as loop_weight;
 
 use crate::FULL;
 use crate::apart;
-use crate::crease::{self, Creases, Parts};
+use crate::crease::{self, Parts};
 use crate::limit::LimitRule;
 use crate::sink::{Cursor, Eval, Record, Row, Sink, TakeRow};
 use crate::split::{FaceShape, Level, Split, Triangles};
@@ -183,56 +185,6 @@ impl Info {
             Family::Fractal => &fractal::wrapped(params).info,
             _ => self,
         }
-    }
-}
-
-/// What rules have to know beside the connectivity.
-#[derive(Clone, Copy, Debug)]
-pub struct Tags<'a> {
-    /// The rules of the plan.
-    pub rules: Rules,
-    /// The level that is refined.
-    pub step: u32,
-    /// Vertices that stay where they are, by vertex id; shorter than the vertices where the rest is not.
-    pub sharp: &'a [bool],
-    /// Vertices of one face that are no corners, as in [`crate::Mesh::joined`].
-    pub joined: &'a [bool],
-    /// How sharp edges and vertices of the level are; none if none is marked.
-    pub creases: Option<&'a Creases>,
-    /// Corners that the split treats by name, by their half-edges: of the dual split those with two images, children from
-    /// `half_edges()` on; of the mid-edge split those that are kept, children from `edges()` on. Of the mixed
-    /// and the n-way split the faces that they have to tell apart.
-    pub lone: &'a [u32],
-    /// Knot intervals by half-edges, as in [`crate::Mesh::knots`]; empty if all are 1.
-    pub knots: &'a [f32],
-    /// The mean length of the edges of level 0, where the scheme asks for it.
-    pub size: f64,
-    /// The scheme's parameters: [`Params::of`].
-    pub params: [f64; MOST_PARAMS],
-    /// Vertices from here on were born in steps of triangles and are regular: of six faces, or three on a boundary or either
-    /// side of a crease. No vertex at all where that is not known.
-    pub first_regular: u32,
-}
-
-impl Tags<'_> {
-    /// Tags of a mesh without marks, at level 0.
-    pub fn new(rules: Rules, params: [f64; MOST_PARAMS]) -> Tags<'static> {
-        let first_regular = u32::MAX;
-        let (step, size, creases) = (0, 0.0, None);
-        Tags { rules, step, sharp: &[], joined: &[], creases, lone: &[], knots: &[], size, params, first_regular }
-    }
-
-    /// Whether `v`, which starts its turn at `start`, is kept.
-    #[inline(always)]
-    pub(crate) fn is_sharp<C: Connectivity>(&self, c: &C, v: u32) -> bool {
-        if (v as usize) < self.sharp.len() && self.sharp[v as usize] {
-            return true;
-        }
-        if FULL && self.creases.is_some_and(|creases| creases.keeps(v)) {
-            return true;
-        }
-        let joined = || self.joined.get(v as usize).is_some_and(|&joined| joined);
-        c.is_pinned(v) || (self.rules.boundary == Boundary::EdgeAndCorner && c.is_tip(v) && !joined())
     }
 }
 
