@@ -225,7 +225,7 @@ impl Split {
     }
 
     /// The same, as simple as `c` lets it be: without a rim there is nothing to cut in three.
-    fn on(self, c: &crate::Topology, creases: Option<&Creases>) -> Split {
+    fn simplest(self, c: &crate::Topology, creases: Option<&Creases>) -> Split {
         match self {
             Split::Sqrt3 { trisect } => {
                 Split::Sqrt3 { trisect: trisect && (c.boundary_half_edges() > 0 || creases.is_some()) }
@@ -236,7 +236,7 @@ impl Split {
 
     /// The faces of the next level, for splits that store it. `c` is a stored level, `creases` its own.
     pub(crate) fn cut(self, c: &crate::Topology, creases: Option<&Creases>) -> stored::Cut {
-        match self.on(c, creases) {
+        match self.simplest(c, creases) {
             _ if !crate::FULL => unreachable!("no scheme of this build stores levels"),
             Split::Sqrt3 { trisect } => match creases {
                 Some(creases) => stored::sqrt3(&Apart::turned(c, creases), c, trisect),

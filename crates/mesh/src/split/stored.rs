@@ -75,7 +75,7 @@ impl Cut {
 
     /// The half-edges of these faces, `vertices` in all.
     pub fn connect(self, parent: &Topology, split: super::Split, vertices: u32, creases: Option<&Creases>) -> Topology {
-        let mate = match (split.on(parent, creases), creases) {
+        let mate = match (split.simplest(parent, creases), creases) {
             (super::Split::Sqrt3 { trisect }, Some(creases)) => {
                 let apart = Apart::turned(parent, creases);
                 let mut mate = mates(&apart, trisect);
