@@ -368,8 +368,9 @@ impl Topology {
         }
         let mut twin = mate;
         let mut edge = vec![0; origin.len()];
+        let sides = twin.len() + twin.iter().filter(|&&t| t == u32::MAX).count();
         // Which side of an edge comes first cannot be foreseen: no branch. What is written behind the last edge does not stay.
-        let mut edge_half_edge = vec![0; origin.len() + 1];
+        let mut edge_half_edge = vec![0; sides / 2 + 1];
         let (mut edges, mut boundary) = (0, Vec::new());
         for h in 0..origin.len() as u32 {
             let t = twin[h as usize];
