@@ -30,7 +30,7 @@ pub struct Tags<'a> {
     pub knots: &'a [f32],
     /// The mean length of the edges of level 0, where the scheme asks for it.
     pub size: f64,
-    /// The scheme's parameters: [`Params::of`].
+    /// The scheme's parameters: [`super::Params::of`].
     pub params: [f64; MOST_PARAMS],
     /// Vertices from here on were born in steps of triangles and are regular: of six faces, or three on a boundary or either
     /// side of a crease. No vertex at all where that is not known.
