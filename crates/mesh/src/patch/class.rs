@@ -14,7 +14,7 @@
 //! Cost: about the squared size of the ring times the points of the grid, once a class and depth. Memory: 4 bytes times the
 //! ring a point, per class.
 
-use super::grid::{LANES, strips};
+use super::grid::LANES;
 use super::layout::{Layout, place};
 use super::ring::{self, Corner, Ring};
 use crate::connect::connect;
@@ -72,7 +72,7 @@ pub(super) struct Classes {
     tables: Vec<Option<Table>>,
 }
 
-/// Where the grids and strips of the four children lie in a grid with strips ([`super::grid::Planes`]); [`INSIDE`] for
+/// Where the grids and strips of the four children lie in a grid with strips ([`super::grid::room`]); [`INSIDE`] for
 /// strips between them.
 #[derive(Debug)]
 struct Grid {
@@ -271,7 +271,7 @@ impl Grid {
             _ => [a + b, half - a],
         };
         let count = |w: usize| if sides == 4 { w * w } else { w * (w + 1) / 2 };
-        let begin = strips(count(w));
+        let begin = count(w);
         // The first half of a side is its corner's child's first, the other half the next one's last.
         let strip = |k: usize, side: usize, p: u16| match (k, side) {
             _ if k >= sides => INSIDE,
@@ -281,7 +281,6 @@ impl Grid {
         };
         let of_child = |k: usize| {
             let mut places: Vec<u16> = inner().map(|p| place(sides, usize::from(m), of(k, p))).collect();
-            places.resize(strips(places.len()), INSIDE);
             for side in 0..sides {
                 // A triangle's strip has a point less.
                 places.extend((0..=half).map(|p| if sides == 3 && p == half { INSIDE } else { strip(k, side, p) }));

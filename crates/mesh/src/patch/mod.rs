@@ -30,6 +30,7 @@ mod drag;
 mod grid;
 mod layout;
 mod ring;
+mod turn;
 mod worker;
 
 use crate::mesh::Mesh;
@@ -39,7 +40,7 @@ use crate::split::{Level, on};
 use crate::topology::{Connectivity, Counts};
 pub use drag::{Drag, Moved};
 use grid::MOST_STEPS;
-use layout::Layout;
+use layout::{Layout, Run};
 use std::ops::Range;
 use worker::{Start, Target, Worker};
 
@@ -96,8 +97,10 @@ pub(crate) struct Patches {
     rules: Rules,
     /// One a thread.
     workers: Vec<Worker>,
+    /// Of each: its patches, and how many of these it has taken on.
+    shares: Vec<(Range<u32>, u32)>,
     kept: Kept,
-    /// The next patch, then edge, then vertex.
+    /// When patches are done, the next edge, then vertex.
     next: u32,
 }
 
@@ -116,7 +119,7 @@ impl Patches {
     /// Prepares the patches of a level with `counts` to be cut `depth` times by `step`; none if ids leave 32 bits.
     pub(crate) fn new(step: Step, rules: Rules, depth: u32, counts: Counts) -> Option<Patches> {
         let layout = Layout::new(step.split, depth, counts)?;
-        Some(Patches { layout, step, rules, workers: Vec::new(), kept: Kept::default(), next: 0 })
+        Some(Patches { layout, step, rules, workers: Vec::new(), shares: Vec::new(), kept: Kept::default(), next: 0 })
     }
 
     /// Counts of the last level, and of the one before.
@@ -155,32 +158,28 @@ impl Patches {
         out: &mut Out<'_>,
         quota: &mut usize,
     ) -> Progress {
-        let (patches, m) = (c.faces(), self.layout.m);
-        if self.kept.points.is_empty() {
+        let m = self.layout.m;
+        if self.shares.is_empty() {
             if !ring::is_local(tags) {
                 return Progress::Unfit;
             }
             let half_edges = c.half_edges() as usize;
             self.kept.points = bytemuck::zeroed_vec(half_edges);
             self.kept.normals = bytemuck::zeroed_vec(if out.normals.is_empty() { 0 } else { half_edges });
+            self.share(c.faces());
         }
-        if self.next < patches {
-            let from = self.next;
-            let to = from.saturating_add((*quota / self.faces()).clamp(1, 1 << 20) as u32).min(patches);
-            let shares = self.shares(from..to);
-            if !self.run(&shares, (c, tags, old), out) {
-                return Progress::Unfit;
-            }
-            self.next = to;
-            *quota = quota.saturating_sub((to - from) as usize * self.faces());
+        if self.shares.iter().any(|(share, taken)| *taken < share.len() as u32) {
+            let most = (*quota / self.faces() / self.shares.len()).clamp(1, 1 << 20) as u32;
+            let Some(count) = self.run(most, (c, tags, old), out) else { return Progress::Unfit };
+            *quota = quota.saturating_sub(count as usize * self.faces());
             return Progress::More;
         }
-        let all = patches + c.edges() + c.vertices();
-        let from = self.next - patches;
-        let to = from.saturating_add((*quota / m).clamp(1, 1 << 20) as u32).min(all - patches);
+        let all = c.edges() + c.vertices();
+        let from = self.next;
+        let to = from.saturating_add((*quota / m).clamp(1, 1 << 20) as u32).min(all);
         self.borders(c, from..to, out);
         *quota = quota.saturating_sub((to - from) as usize * m);
-        self.next = patches + to;
+        self.next = to;
         if self.next < all {
             return Progress::More;
         }
@@ -213,13 +212,19 @@ impl Patches {
     ) {
         let sides = self.layout.sides as u32;
         self.workers.iter_mut().for_each(Worker::forget_rims);
-        for group in patches.chunk_by(|a, b| a + 1 == *b) {
-            let range = group[0]..group[0] + group.len() as u32;
-            // Their rings have been met before.
-            self.run(std::slice::from_ref(&range), (c, tags, old), out);
-            ids.extend(
-                self.layout.runs.iter().map(|run| run.base + run.per * range.start..run.base + run.per * range.end),
-            );
+        let Patches { layout, workers, kept, .. } = self;
+        let whole = 0..c.faces();
+        let mut targets = Target::cut(layout, std::slice::from_ref(&whole), out, kept);
+        if let (Some(worker), Some(target)) = (workers.first_mut(), targets.first_mut()) {
+            let start = (c, tags, old);
+            for group in patches.chunk_by(|a, b| a + 1 == *b) {
+                let range = group[0]..group[0] + group.len() as u32;
+                let of = |run: &Run| run.base + run.per * range.start..run.base + run.per * range.end;
+                ids.extend(layout.runs.iter().map(of));
+                // Their rings have been met before.
+                worker.run(layout, start, range, false, target);
+            }
+            worker.run(layout, start, 0..0, true, target);
         }
         let edges = c.edges();
         for h in patches.iter().flat_map(|&q| sides * q..sides * (q + 1)) {
@@ -231,34 +236,37 @@ impl Patches {
         self.boundary(c, out, |id| ids.push(id..id + 1));
     }
 
-    /// Evaluates patches, each range by a worker of its own; false if they do not pay.
-    fn run<C: Connectivity + Sync>(&mut self, ranges: &[Range<u32>], start: Start<'_, C>, out: &mut Out<'_>) -> bool {
-        let Patches { layout, step, rules, workers, kept, .. } = self;
-        while workers.len() < ranges.len() {
-            workers.push(Worker::new(*step, *rules, layout));
-        }
-        let mut targets = Target::cut(layout, ranges, out, kept);
-        let layout = &*layout;
-        let work = |((worker, range), target): ((&mut Worker, &Range<u32>), &mut Target<'_>)| {
-            worker.run(layout, start, range.clone(), target)
-        };
+    /// Shares the patches among threads: one, unless there is much to do and the feature `parallel` is on.
+    fn share(&mut self, patches: u32) {
+        let mut n = 1;
         #[cfg(feature = "parallel")]
-        if ranges.len() > 1 {
-            use rayon::prelude::*;
-            return workers.par_iter_mut().zip(ranges).zip(&mut targets).map(work).all(|fit| fit);
+        if patches as usize * self.faces() >= MANY {
+            n = rayon::current_num_threads() as u64;
         }
-        workers.iter_mut().zip(ranges).zip(&mut targets).all(work)
+        let at = |i: u64| (u64::from(patches) * i / n) as u32;
+        self.shares = (0..n).map(|i| (at(i)..at(i + 1), 0)).collect();
+        let Patches { layout, step, rules, .. } = self;
+        self.workers = self.shares.iter().map(|_| Worker::new(*step, *rules, layout)).collect();
     }
 
-    /// Patches in as many ranges as there are threads: one, unless there is much to do and the feature `parallel` is on.
-    fn shares(&self, patches: Range<u32>) -> Vec<Range<u32>> {
+    /// Takes on up to `most` patches of every share; says how many, or none if patches do not pay.
+    fn run<C: Connectivity>(&mut self, most: u32, start: Start<'_, C>, out: &mut Out<'_>) -> Option<u32> {
+        let Patches { layout, workers, shares, kept, .. } = self;
+        let wholes: Vec<Range<u32>> = shares.iter().map(|(share, _)| share.clone()).collect();
+        let mut targets = Target::cut(layout, &wholes, out, kept);
+        let layout = &*layout;
+        let work = |((worker, (share, taken)), target): ((&mut Worker, &mut (Range<u32>, u32)), &mut Target<'_>)| {
+            let from = share.start + *taken;
+            let to = from.saturating_add(most).min(share.end);
+            *taken = to - share.start;
+            worker.run(layout, start, from..to, to == share.end, target).then_some(to - from)
+        };
         #[cfg(feature = "parallel")]
-        if patches.len() * self.faces() >= MANY {
-            let n = rayon::current_num_threads() as u64;
-            let at = |i: u64| patches.start + (patches.len() as u64 * i / n) as u32;
-            return (0..n).map(|i| at(i)..at(i + 1)).collect();
+        if wholes.len() > 1 {
+            use rayon::prelude::*;
+            return workers.par_iter_mut().zip(shares).zip(&mut targets).map(work).sum();
         }
-        vec![patches]
+        workers.iter_mut().zip(shares).zip(&mut targets).map(work).sum()
     }
 
     /// Puts together what patches left for edges and vertices: edges first, then vertices.

@@ -1,35 +1,59 @@
-//! One thread's work on patches: from a ring to the runs of ids that a patch owns.
+//! One thread's work on patches: from rings to the runs of ids that patches own.
 //!
 //! ```text
-//!   ring ─> class or spline ─> grid ─> runs of points         all in the first cache, but what is written
-//!                                └──> normals ─> runs         what others share: anchors and rims (`mod.rs`)
+//!   ring ─> class ─> eight of a class ─> grids ─> runs of points       all in the first caches, but what is written
+//!            (waits for others)             └──> normals ─> runs       what others share: anchors and rims (`mod.rs`)
 //! ```
+//!
+//! Patches wait until eight of their class are there. Those that are left over at the end are evaluated one by one, into lanes
+//! of the same grids.
 //!
 //! Cost: `grid.rs`.
 
 use super::class::Classes;
-use super::grid::{self, Planes, Rows, Spline};
+use super::grid::{self, Cell, LANES, Spline};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
+use super::turn::{Plain, Turn};
 use super::{Anchor, Kept, Out, Point};
 use crate::plan::Step;
 use crate::scheme::{Rules, Tags};
 use crate::topology::{Connectivity, is_boundary};
 use std::ops::Range;
 
+/// So many of a class, if not eight, are still worked on at once.
+const FEW: usize = 5;
+
 /// What one thread needs for itself.
 #[derive(Debug)]
 pub(super) struct Worker {
     classes: Classes,
+    ring: Ring,
+    /// By class; the first are those that the spline makes.
+    waiting: Vec<Waiting>,
+    room: Room,
+    rims: Rims,
+}
+
+/// Patches of a class, and the control points of each.
+#[derive(Debug, Default)]
+struct Waiting {
+    patches: Vec<u32>,
+    controls: Vec<u32>,
+}
+
+/// The grids of eight patches.
+#[derive(Debug)]
+struct Room {
     /// The kernel of regular patches, where it has a better one than a table.
     spline: Option<Spline>,
-    ring: Ring,
-    controls: Vec<Point>,
-    points: Planes,
-    normals: Planes,
-    rows: Rows,
+    controls: Vec<Cell>,
+    /// Of one patch.
+    lone: Vec<Point>,
+    points: Vec<Cell>,
+    normals: Vec<Cell>,
+    rows: Vec<Cell>,
     ids: Vec<u32>,
-    rims: Rims,
 }
 
 /// Sides of patches on the boundary, with their `m` points and normals.
@@ -42,6 +66,8 @@ pub(super) struct Rims {
 
 /// The parts of the buffers that belong to consecutive patches.
 pub(super) struct Target<'a> {
+    /// The first patch.
+    first: u32,
     points: Vec<&'a mut [Point]>,
     normals: Vec<&'a mut [Point]>,
     corners: Vec<&'a mut [u32]>,
@@ -81,13 +107,14 @@ impl<'a> Target<'a> {
         let mut corners = parts(out.corners, all(face_runs, layout.sides).into_iter()).into_iter();
         let mut bent = parts(&mut kept.normals, sides().filter(|_| !bent_runs.is_empty())).into_iter();
         let anchors = parts(&mut kept.points, sides()).into_iter();
-        let target = |anchors| Target {
+        let target = |(anchors, range): (_, &Range<u32>)| Target {
+            first: range.start,
             points: Vec::new(),
             normals: Vec::new(),
             corners: Vec::new(),
             anchors: [anchors, bent.next().unwrap_or_default()],
         };
-        let mut targets: Vec<Self> = anchors.map(target).collect();
+        let mut targets: Vec<Self> = anchors.zip(ranges).map(target).collect();
         for i in 0..layout.runs.len() * ranges.len() {
             let target = &mut targets[i % ranges.len()];
             target.points.extend(points.next());
@@ -107,13 +134,17 @@ impl Worker {
     pub(super) fn new(step: Step, rules: Rules, layout: &Layout) -> Worker {
         Worker {
             classes: Classes::new(step, rules, layout),
-            spline: (step.scheme.info.id == "catmull-clark").then(|| Spline::new(layout.depth)),
             ring: Ring::default(),
-            controls: Vec::new(),
-            points: Planes::new(layout.m),
-            normals: Planes::new(layout.m),
-            rows: Rows::new(),
-            ids: vec![0; layout.sides * layout.m],
+            waiting: vec![Waiting::default()],
+            room: Room {
+                spline: (step.scheme.info.id == "catmull-clark").then(|| Spline::new(layout.depth)),
+                controls: Vec::new(),
+                lone: Vec::new(),
+                points: grid::room(layout.m),
+                normals: grid::room(layout.m),
+                rows: Vec::new(),
+                ids: vec![0; layout.sides * layout.m],
+            },
             rims: Rims::default(),
         }
     }
@@ -126,20 +157,21 @@ impl Worker {
         self.rims = Rims::default();
     }
 
-    /// Evaluates patches; false if they do not pay.
+    /// Takes patches on, and with `finish` leaves none waiting; false if they do not pay.
     pub(super) fn run<C: Connectivity>(
         &mut self,
         layout: &Layout,
         start: Start<'_, C>,
         patches: Range<u32>,
+        finish: bool,
         target: &mut Target<'_>,
     ) -> bool {
         #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
+        if let Some(wide) = super::turn::Wide::new() {
             // SAFETY: the processor has what the function is compiled for.
-            return unsafe { self.run_wide(layout, start, patches, target) };
+            return unsafe { self.run_wide(layout, start, patches, finish, (target, wide)) };
         }
-        self.run_here(layout, start, patches, target)
+        self.run_here(layout, start, patches, finish, (target, Plain))
     }
 
     /// The same statements, compiled for vectors of eight: the same bits, for lanes do not meet.
@@ -150,9 +182,10 @@ impl Worker {
         layout: &Layout,
         start: Start<'_, C>,
         patches: Range<u32>,
-        target: &mut Target<'_>,
+        finish: bool,
+        out: (&mut Target<'_>, super::turn::Wide),
     ) -> bool {
-        self.run_here(layout, start, patches, target)
+        self.run_here(layout, start, patches, finish, out)
     }
 
     #[inline(always)]
@@ -161,100 +194,243 @@ impl Worker {
         layout: &Layout,
         (c, tags, old): Start<'_, C>,
         patches: Range<u32>,
-        target: &mut Target<'_>,
+        finish: bool,
+        (target, turn): (&mut Target<'_>, impl Turn),
     ) -> bool {
-        let (sides, m) = (layout.sides, layout.m);
         let most = 24 + c.faces() as usize / 16;
-        for q in patches.clone() {
-            if !self.ring.read(c, sides, q, tags) || !self.evaluate(layout, old, most, !target.normals.is_empty()) {
-                return false;
-            }
-            let i = (q - patches.start) as usize;
-            for (run, part) in layout.runs.iter().zip(&mut target.points) {
-                let per = run.per as usize;
-                self.points.copy(layout.places_of(run), &mut part[i * per..(i + 1) * per]);
-            }
-            let shaded = !target.normals.is_empty();
-            if shaded {
-                grid::sum_normals(sides, m, &self.points, &mut self.rows, &mut self.normals);
-                let sums = layout.border.chunks_exact(m).map(|side| self.normals.point(side[0]));
-                target.anchors[1][sides * i..].iter_mut().zip(sums).for_each(|(anchor, sum)| anchor[0] = sum);
-                let size = (sides, m, layout.points);
-                grid::add_across(size, &layout.border, &self.points, &mut self.rows, &mut self.normals);
-                grid::normalise(&mut self.normals, layout.points);
-                for (run, part) in layout.runs.iter().zip(&mut target.normals) {
-                    let per = run.per as usize;
-                    self.normals.copy(layout.places_of(run), &mut part[i * per..(i + 1) * per]);
+        let Worker { classes, ring, waiting, room, rims } = self;
+        let mut ready = None;
+        let mut next = patches.start;
+        loop {
+            // Reading goes on until a group is full or all is read: the arithmetic stands here once.
+            while ready.is_none() && next < patches.end {
+                if !ring.read(c, layout.sides, next, tags) {
+                    return false;
                 }
+                let Some(class) = room.class_of(classes, ring, waiting, most) else { return false };
+                waiting[class].add(next, ring, room.active(classes, class));
+                ready = (waiting[class].patches.len() == LANES).then_some(class);
+                next += 1;
             }
+            if ready.is_none() && finish {
+                let enough = |class: usize| if room.is_spline(class) { 1 } else { FEW };
+                ready = (0..waiting.len()).find(|&class| waiting[class].patches.len() >= enough(class));
+            }
+            let Some(class) = ready.take() else { break };
+            room.evaluate(layout, classes, class, &waiting[class], old, !target.normals.is_empty());
+            room.hand_out(layout, c, &waiting[class].patches, rims, (target, turn));
+            waiting[class].clear();
+        }
+        if finish {
+            let mut group: Vec<u32> = Vec::new();
+            for class in 0..waiting.len() {
+                let Waiting { patches, controls } = &mut waiting[class];
+                let each = controls.len() / patches.len().max(1);
+                for (&q, controls) in patches.iter().zip(controls.chunks_exact(each.max(1))) {
+                    room.evaluate_one(layout, classes, class, controls, old, (group.len(), !target.normals.is_empty()));
+                    group.push(q);
+                    if group.len() == LANES {
+                        room.hand_out(layout, c, &group, rims, (target, turn));
+                        group.clear();
+                    }
+                }
+                waiting[class].clear();
+            }
+            if !group.is_empty() {
+                room.hand_out(layout, c, &group, rims, (target, turn));
+            }
+        }
+        true
+    }
+}
+
+impl Waiting {
+    #[inline(always)]
+    fn add(&mut self, q: u32, ring: &Ring, active: Option<&[u16]>) {
+        self.patches.push(q);
+        match active {
+            Some(active) => self.controls.extend(active.iter().map(|&k| ring.controls[usize::from(k)])),
+            None => self.controls.extend_from_slice(&ring.controls),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.patches.clear();
+        self.controls.clear();
+    }
+}
+
+impl Room {
+    fn is_spline(&self, class: usize) -> bool {
+        class == 0 && self.spline.is_some()
+    }
+
+    /// Where patches with this ring wait; none if there are more than `most` tables already.
+    #[inline(always)]
+    fn class_of(&self, classes: &mut Classes, ring: &Ring, waiting: &mut Vec<Waiting>, most: usize) -> Option<usize> {
+        if ring.key.is_empty() && self.spline.is_some() {
+            return Some(0);
+        }
+        let number = classes.number(&ring.key)?;
+        if classes.get(number).is_none() {
+            if classes.tabled() >= most {
+                return None;
+            }
+            classes.prepare(number);
+        }
+        let class = number as usize + 1;
+        if waiting.len() <= class {
+            waiting.resize_with(class + 1, Waiting::default);
+        }
+        Some(class)
+    }
+
+    /// Which of a class's control points count; none if all.
+    #[inline(always)]
+    fn active<'a>(&self, classes: &'a Classes, class: usize) -> Option<&'a [u16]> {
+        classes.get((class as u32).checked_sub(1)?).map(|table| &table.active[..])
+    }
+
+    /// How many points are wanted of a table.
+    #[inline(always)]
+    fn count(layout: &Layout, shaded: bool) -> usize {
+        layout.points + if shaded { layout.sides * (layout.m + 1) } else { 0 }
+    }
+
+    /// The points of a class's patches. Lanes without one have the last one's.
+    #[inline(always)]
+    fn evaluate(
+        &mut self,
+        layout: &Layout,
+        classes: &Classes,
+        class: usize,
+        group: &Waiting,
+        old: &[Point],
+        shaded: bool,
+    ) {
+        let each = group.controls.len() / group.patches.len().max(1);
+        self.controls.clear();
+        self.controls.resize(each, Cell::ZERO);
+        for lane in 0..LANES {
+            let from = lane.min(group.patches.len() - 1) * each;
+            for (cell, &v) in self.controls.iter_mut().zip(&group.controls[from..from + each]) {
+                cell.set(lane, old[v as usize]);
+            }
+        }
+        if let (0, Some(spline)) = (class, &self.spline) {
+            spline.evaluate(layout.m, &self.controls, shaded, &mut self.rows, &mut self.points);
+        } else if let Some(table) = classes.get(class as u32 - 1) {
+            table.evaluate(&self.controls, &mut self.points[..Room::count(layout, shaded)]);
+        }
+    }
+
+    /// The points of one patch, in a lane.
+    #[inline(always)]
+    fn evaluate_one(
+        &mut self,
+        layout: &Layout,
+        classes: &Classes,
+        class: usize,
+        controls: &[u32],
+        old: &[Point],
+        (lane, shaded): (usize, bool),
+    ) {
+        self.lone.clear();
+        self.lone.extend(controls.iter().map(|&v| old[v as usize]));
+        if let Some(table) = classes.get(class as u32 - 1) {
+            table.evaluate_one(&self.lone, lane, &mut self.points[..Room::count(layout, shaded)]);
+        }
+    }
+
+    /// Writes what patches own, one in each lane, and keeps what they share.
+    #[inline(always)]
+    fn hand_out<C: Connectivity>(
+        &mut self,
+        layout: &Layout,
+        c: &C,
+        patches: &[u32],
+        rims: &mut Rims,
+        (target, turn): (&mut Target<'_>, impl Turn),
+    ) {
+        let (sides, m) = (layout.sides, layout.m);
+        let shaded = !target.normals.is_empty();
+        let first = target.first;
+        deal(layout, &self.points, patches, first, &mut target.points, turn);
+        if shaded {
+            let size = (sides, m, layout.points);
+            grid::shade(size, &layout.border, &self.points, &mut self.rows, &mut self.normals);
+            deal(layout, &self.normals, patches, first, &mut target.normals, turn);
+        }
+        for (lane, &q) in patches.iter().enumerate() {
+            let i = (q - first) as usize;
+            let point = |place: u16| self.points[usize::from(place)].point(lane);
+            let normal = |place: u16| self.normals[usize::from(place)].point(lane);
             for (side, border) in layout.border.chunks_exact(m).enumerate() {
                 let (h, at) = (sides as u32 * q + side as u32, sides * i + side);
-                target.anchors[0][at] = [self.points.point(border[0]), self.points.point(border[m / 2])];
+                target.anchors[0][at] = [point(border[0]), point(border[m / 2])];
                 if shaded {
-                    target.anchors[1][at][1] = self.normals.point(border[m / 2]);
+                    target.anchors[1][at] = [normal(border[0]), normal(border[m / 2])];
                 }
                 if is_boundary(c.twin(h)) {
-                    self.rims.half_edges.push(h);
-                    self.rims.points.extend(border.iter().map(|&place| self.points.point(place)));
+                    rims.half_edges.push(h);
+                    rims.points.extend(border.iter().map(|&place| point(place)));
                     if shaded {
-                        self.rims.normals.extend(border.iter().map(|&place| self.normals.point(place)));
+                        rims.normals.extend(border.iter().map(|&place| normal(place)));
                     }
                 }
             }
             if !target.corners.is_empty() {
-                self.list(layout, c, q, i, &mut target.corners);
+                list(layout, c, (q, i), &mut self.ids, &mut target.corners);
             }
         }
-        true
     }
+}
 
-    /// The points of the patch whose ring was read; false if there are more than `most` tables already.
-    #[inline(always)]
-    fn evaluate(&mut self, layout: &Layout, old: &[Point], most: usize, shaded: bool) -> bool {
-        let ring = &self.ring;
-        if let (true, Some(spline), Some(controls)) = (ring.key.is_empty(), &self.spline, ring.controls.first_chunk()) {
-            let controls: &[u32; 16] = controls;
-            spline.evaluate(layout.m, &controls.map(|v| old[v as usize]), shaded, &mut self.points);
-            return true;
-        }
-        let Some(number) = self.classes.number(&ring.key) else { return false };
-        if self.classes.get(number).is_none() {
-            if self.classes.tabled() >= most {
-                return false;
+/// Writes the points that patches own, one in each lane.
+#[inline(always)]
+fn deal(layout: &Layout, cells: &[Cell], patches: &[u32], first: u32, out: &mut [&mut [Point]], turn: impl Turn) {
+    for (run, part) in layout.runs.iter().zip(out) {
+        let (per, places) = (run.per as usize, layout.places_of(run));
+        let at = |q: u32| (q - first) as usize * per;
+        let Some(last) = per.checked_sub(LANES) else {
+            for (lane, &q) in patches.iter().enumerate() {
+                let out = &mut part[at(q)..][..per];
+                out.iter_mut().zip(places).for_each(|(out, &place)| *out = cells[usize::from(place)].point(lane));
             }
-            self.classes.prepare(number);
+            continue;
+        };
+        // The last eight may have been in the eight before.
+        for from in (0..per).step_by(LANES).map(|from| from.min(last)) {
+            let Some(eight) = places[from..].first_chunk::<LANES>() else { continue };
+            let turned = turn.turn(eight.map(|place| &cells[usize::from(place)]));
+            for (points, &q) in turned.iter().zip(patches) {
+                part[at(q) + from..][..LANES].copy_from_slice(bytemuck::cast_slice(points));
+            }
         }
-        let Some(table) = self.classes.get(number) else { return false };
-        self.controls.clear();
-        self.controls.extend(table.active.iter().map(|&k| old[ring.controls[usize::from(k)] as usize]));
-        let strips = if shaded { layout.sides * (layout.m + 1) } else { 0 };
-        table.evaluate(&self.controls, grid::strips(layout.points) + strips, &mut self.points);
-        true
     }
+}
 
-    /// The corners of patch `q`'s faces.
-    #[inline(always)]
-    fn list<C: Connectivity>(&mut self, layout: &Layout, c: &C, q: u32, i: usize, out: &mut [&mut [u32]]) {
-        let (sides, m) = (layout.sides, layout.m);
-        for (side, ids) in self.ids.chunks_exact_mut(m).enumerate() {
-            let h = (sides as u32) * q + side as u32;
-            let (seam, other) = layout.seam(c, h);
-            seam.ids(q, other, ids);
-            ids[0] = c.origin(h);
-            ids[m / 2] = layout.first_edge + c.edge(h);
+/// The corners of patch `q`'s faces, the i-th of the target.
+#[inline(always)]
+fn list<C: Connectivity>(layout: &Layout, c: &C, (q, i): (u32, usize), ids: &mut [u32], out: &mut [&mut [u32]]) {
+    let (sides, m) = (layout.sides, layout.m);
+    for (side, ids) in ids.chunks_exact_mut(m).enumerate() {
+        let h = (sides as u32) * q + side as u32;
+        let (seam, other) = layout.seam(c, h);
+        seam.ids(q, other, ids);
+        ids[0] = c.origin(h);
+        ids[m / 2] = layout.first_edge + c.edge(h);
+    }
+    for ((run, part), on_border) in layout.face_runs.iter().zip(out).zip(&layout.on_border) {
+        let per = run.per as usize * sides;
+        let range = run.first..run.first + per;
+        let part = &mut part[i * per..(i + 1) * per];
+        let template = layout.faces[range.clone()].iter().zip(&layout.face_steps[range]);
+        for (corner, (base, step)) in part.iter_mut().zip(template) {
+            *corner = base.wrapping_add(step.wrapping_mul(q));
         }
-        let ids = &self.ids[..];
-        for ((run, part), on_border) in layout.face_runs.iter().zip(out).zip(&layout.on_border) {
-            let per = run.per as usize * sides;
-            let range = run.first..run.first + per;
-            let part = &mut part[i * per..(i + 1) * per];
-            let template = layout.faces[range.clone()].iter().zip(&layout.face_steps[range]);
-            for (corner, (base, step)) in part.iter_mut().zip(template) {
-                *corner = base.wrapping_add(step.wrapping_mul(q));
-            }
-            for &[at, slot] in on_border {
-                part[usize::from(at)] = ids[usize::from(slot)];
-            }
+        for &[at, slot] in on_border {
+            part[usize::from(at)] = ids[usize::from(slot)];
         }
     }
 }
