@@ -252,15 +252,15 @@ impl Job {
         self
     }
 
-    /// Fills the buffers of a level that is not needed any more, where patches make the last levels: memory that was touched
-    /// before costs half as much. If it was made of the same half-edges by the same splits, its corners stay as they are.
+    /// Fills the buffers of a level that is not needed any more, where patches make the last levels and there is room: memory
+    /// that was touched before costs half as much. If it was made of the same half-edges by the same splits, its corners stay
+    /// as they are.
     #[cfg(feature = "full")]
     pub fn reusing(mut self, old: Refined) -> Job {
         let same = old.counts == self.last_counts() && old.level == self.plan.level && old.hidden == 0;
         let same = same && self.steps.last().is_some_and(|s| s.split == old.split);
-        if same && self.mesh.topology == old.mesh.topology {
-            self.geometry.reuse(old);
-        }
+        let same = same && self.mesh.topology == old.mesh.topology;
+        self.geometry.reuse(old, same);
         self
     }
 

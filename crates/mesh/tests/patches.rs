@@ -146,9 +146,17 @@ fn buffers_are_used_again() {
         let (fresh, reused) = (job(&moved).finish(), job(&moved).reusing(job(&soup).finish()).finish());
         assert_eq!((&fresh.points, &fresh.faces), (&reused.points, &reused.faces), "level {level}");
         assert_eq!(fresh.known_normals, reused.known_normals, "level {level}");
-        // Another model's are left alone.
-        let other = job(&(shape("cube").unwrap().build)()).finish();
-        assert_eq!(fresh.points, job(&moved).reusing(other).finish().points, "level {level}");
+        // So are another model's, corners with them, whether there is room or not.
+        let mut turned = moved.clone();
+        let last = turned.face_count() - 1;
+        let corners = turned.face(last).len();
+        let first = turned.corners.len() - corners;
+        turned.corners[first..].rotate_left(1);
+        for other in [turned, (shape("cube").unwrap().build)(), (shape("creature").unwrap().build)()] {
+            let reused = job(&moved).reusing(job(&other).finish()).finish();
+            assert_eq!((&fresh.points, &fresh.faces), (&reused.points, &reused.faces), "level {level}");
+            assert_eq!(fresh.known_normals, reused.known_normals, "level {level}");
+        }
     }
 }
 

@@ -23,8 +23,8 @@ pub(super) const LANES: usize = 8;
 pub(super) const MOST_STEPS: usize = 32;
 
 /// A point of each of eight patches.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
 pub(super) struct Cell(pub [[f32; LANES]; 3]);
 
 impl Cell {
@@ -96,52 +96,70 @@ impl Spline {
         // The ring as rows, from below left.
         const ROWS: [[usize; 4]; 4] = [[5, 6, 7, 8], [4, 0, 1, 9], [15, 3, 2, 10], [14, 13, 12, 11]];
         let w = m + 1;
-        let [c0, c1, c2, c3] = self.columns.each_ref().map(|column| &column[..w]);
+        let [c0, c1, c2, c3] = &self.columns;
+        // Written out here and below: closures over arrays are calls, and calls do not have this function's vectors.
+        let columns = [&c0[..w], &c1[..w], &c2[..w], &c3[..w]];
         rows.clear();
-        for row in &ROWS {
-            let p = row.map(|k| &controls[k]);
+        for [a, b, c, d] in &ROWS {
+            let p = [&controls[*a], &controls[*b], &controls[*c], &controls[*d]];
             for i in 0..w {
-                rows.push(blend([c0[i], c1[i], c2[i], c3[i]], p));
+                rows.push(blend([columns[0][i], columns[1][i], columns[2][i], columns[3][i]], p));
             }
         }
-        let rows = &rows[..4 * w];
-        let line = |a: [f32; 4], out: &mut [Cell], back: bool| {
-            let (r0, r) = rows.split_at(w);
-            let (r1, r) = r.split_at(w);
-            let (r2, r3) = r.split_at(w);
-            let (out, r3) = (&mut out[..w], &r3[..w]);
-            for i in 0..w {
-                out[if back { m - i } else { i }] = blend(a, [&r0[i], &r1[i], &r2[i], &r3[i]]);
-            }
-        };
-        for j in 0..w {
-            line([c0[j], c1[j], c2[j], c3[j]], &mut out[j * w..], false);
+        let (below, above) = rows.split_at(2 * w);
+        let ((r0, r1), (r2, r3)) = (below.split_at(w), above.split_at(w));
+        let rows = [r0, r1, r2, r3];
+        for (j, out) in out[..w * w].chunks_exact_mut(w).enumerate() {
+            line([columns[0][j], columns[1][j], columns[2][j], columns[3][j]], rows, out);
         }
         if !shaded {
             return;
         }
-        let strips = &mut out[w * w..];
-        line(self.beyond[0], strips, false);
-        line(self.beyond[1], &mut strips[2 * w..], true);
+        let strips = &mut out[w * w..][..4 * w];
+        line(self.beyond[0], rows, &mut strips[..w]);
+        line(self.beyond[1], rows, &mut strips[2 * w..3 * w]);
+        strips[2 * w..3 * w].reverse();
         // Across the two other sides: columns instead of rows.
-        for (side, b) in [(3, self.beyond[0]), (1, self.beyond[1])] {
-            let q = ROWS.map(|row| blend(b, row.map(|k| &controls[k])));
-            for j in 0..w {
-                let at = if side == 3 { m - j } else { j };
-                strips[side * w + at] = blend([c0[j], c1[j], c2[j], c3[j]], q.each_ref());
+        for (side, beyond) in [(3, self.beyond[0]), (1, self.beyond[1])] {
+            let mut q = [Cell::ZERO; 4];
+            for (q, [a, b, c, d]) in q.iter_mut().zip(&ROWS) {
+                *q = blend(beyond, [&controls[*a], &controls[*b], &controls[*c], &controls[*d]]);
+            }
+            let q = [&q[0], &q[1], &q[2], &q[3]];
+            let strip = &mut strips[side * w..(side + 1) * w];
+            for (j, out) in strip.iter_mut().enumerate() {
+                *out = blend([columns[0][j], columns[1][j], columns[2][j], columns[3][j]], q);
+            }
+            if side == 3 {
+                strip.reverse();
             }
         }
     }
 }
 
+/// Four rows times their weights: as one long row of numbers.
+#[inline(always)]
+fn line(a: [f32; 4], [r0, r1, r2, r3]: [&[Cell]; 4], out: &mut [Cell]) {
+    let out: &mut [f32] = bytemuck::cast_slice_mut(out);
+    let n = out.len();
+    let (r0, r1): (&[f32], &[f32]) = (&bytemuck::cast_slice(r0)[..n], &bytemuck::cast_slice(r1)[..n]);
+    let (r2, r3): (&[f32], &[f32]) = (&bytemuck::cast_slice(r2)[..n], &bytemuck::cast_slice(r3)[..n]);
+    for i in 0..n {
+        out[i] = a[0] * r0[i] + a[1] * r1[i] + a[2] * r2[i] + a[3] * r3[i];
+    }
+}
+
 /// Four points times their weights.
 #[inline(always)]
-fn blend(a: [f32; 4], p: [&Cell; 4]) -> Cell {
+fn blend(a: [f32; 4], [p0, p1, p2, p3]: [&Cell; 4]) -> Cell {
     let mut out = Cell::ZERO;
-    for k in 0..3 {
+    for (k, out) in out.0.iter_mut().enumerate() {
+        let (p0, p1, p2, p3) = (p0.0[k], p1.0[k], p2.0[k], p3.0[k]);
+        let mut sum = [0.0; LANES];
         for l in 0..LANES {
-            out.0[k][l] = a[0] * p[0].0[k][l] + a[1] * p[1].0[k][l] + a[2] * p[2].0[k][l] + a[3] * p[3].0[k][l];
+            sum[l] = a[0] * p0[l] + a[1] * p1[l] + a[2] * p2[l] + a[3] * p3[l];
         }
+        *out = sum;
     }
     out
 }
@@ -214,7 +232,9 @@ pub(super) fn shade(
         }
         if j > 0 {
             // Nothing comes from across.
-            sums[1..length - 1].iter_mut().for_each(|sum| *sum = unit(sum));
+            for sum in &mut sums[1..length - 1] {
+                *sum = unit(sum);
+            }
         }
         start += length;
     }

@@ -127,11 +127,6 @@ impl Patches {
         self.layout.counts
     }
 
-    /// Whether normals are cheaper here than afterwards: not on small grids, where borders are most of the work.
-    pub(crate) fn can_shade(&self) -> bool {
-        self.layout.depth > 2
-    }
-
     /// How many faces a patch is cut into.
     pub(crate) fn faces(&self) -> usize {
         self.layout.m * self.layout.m
@@ -238,11 +233,10 @@ impl Patches {
 
     /// Shares the patches among threads: one, unless there is much to do and the feature `parallel` is on.
     fn share(&mut self, patches: u32) {
-        let mut n = 1;
         #[cfg(feature = "parallel")]
-        if patches as usize * self.faces() >= MANY {
-            n = rayon::current_num_threads() as u64;
-        }
+        let n = if patches as usize * self.faces() >= MANY { rayon::current_num_threads() as u64 } else { 1 };
+        #[cfg(not(feature = "parallel"))]
+        let n = 1;
         let at = |i: u64| (u64::from(patches) * i / n) as u32;
         self.shares = (0..n).map(|i| (at(i)..at(i + 1), 0)).collect();
         let Patches { layout, step, rules, .. } = self;

@@ -20,7 +20,7 @@ pub(super) type Eight = [f32; 3 * LANES];
 /// A way to tell patches apart.
 pub(super) trait Turn: Copy {
     /// The points at eight places, patch by patch.
-    fn turn(self, cells: [&Cell; LANES]) -> [Eight; LANES];
+    fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES];
 }
 
 /// One by one, or as the web can.
@@ -29,10 +29,10 @@ pub(super) struct Plain;
 
 impl Turn for Plain {
     #[inline(always)]
-    fn turn(self, cells: [&Cell; LANES]) -> [Eight; LANES] {
+    fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
         let mut out = [[0.0; 3 * LANES]; LANES];
-        for (i, cell) in cells.iter().enumerate() {
-            for (k, values) in cell.0.iter().enumerate() {
+        for (i, &place) in places.iter().enumerate() {
+            for (k, values) in cells[usize::from(place)].0.iter().enumerate() {
                 for (out, value) in out.iter_mut().zip(values) {
                     out[3 * i + k] = *value;
                 }
@@ -63,28 +63,38 @@ mod wide {
 
     impl Turn for Wide {
         #[inline(always)]
-        fn turn(self, cells: [&Cell; LANES]) -> [Eight; LANES] {
+        fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
             // SAFETY: a `Wide` is made by `new` alone, which looks whether the processor has what this is compiled for.
-            unsafe { turn(cells) }
+            unsafe { turn(cells, places) }
         }
     }
 
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn turn(cells: [&Cell; LANES]) -> [Eight; LANES] {
-        let row = |r: usize| -> __m256 { bytemuck::cast(cells[r / 3].0[r % 3]) };
+    fn turn(cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
+        let mut rows = [_mm256_setzero_ps(); 3 * LANES];
+        for (row, &place) in rows.as_chunks_mut::<3>().0.iter_mut().zip(places) {
+            let cell = &cells[usize::from(place)].0;
+            *row = [bytemuck::cast(cell[0]), bytemuck::cast(cell[1]), bytemuck::cast(cell[2])];
+        }
         let mut out = [[[0.0f32; LANES]; 3]; LANES];
-        for third in 0..3 {
-            let r = |i: usize| row(third * LANES + i);
-            let low = |i: usize| _mm256_unpacklo_ps(r(i), r(i + 1));
-            let high = |i: usize| _mm256_unpackhi_ps(r(i), r(i + 1));
-            let a = [low(0), high(0), low(2), high(2), low(4), high(4), low(6), high(6)];
-            let front = |i: usize| _mm256_shuffle_ps::<0x44>(a[i], a[i + 2]);
-            let back = |i: usize| _mm256_shuffle_ps::<0xee>(a[i], a[i + 2]);
-            let b = [front(0), back(0), front(1), back(1), front(4), back(4), front(5), back(5)];
+        for (third, r) in rows.as_chunks::<LANES>().0.iter().enumerate() {
+            let mut pairs = *r;
+            for i in [0, 2, 4, 6] {
+                pairs[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+                pairs[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+            }
+            // Four patches' four points: of patches 0 to 3 in the lower halves, of 4 to 7 in the upper ones.
+            let mut fours = pairs;
+            for i in [0, 4] {
+                fours[i] = _mm256_shuffle_ps::<0x44>(pairs[i], pairs[i + 2]);
+                fours[i + 1] = _mm256_shuffle_ps::<0xee>(pairs[i], pairs[i + 2]);
+                fours[i + 2] = _mm256_shuffle_ps::<0x44>(pairs[i + 1], pairs[i + 3]);
+                fours[i + 3] = _mm256_shuffle_ps::<0xee>(pairs[i + 1], pairs[i + 3]);
+            }
             for i in 0..4 {
-                out[i][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x20>(b[i], b[i + 4]));
-                out[i + 4][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x31>(b[i], b[i + 4]));
+                out[i][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x20>(fours[i], fours[i + 4]));
+                out[i + 4][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x31>(fours[i], fours[i + 4]));
             }
         }
         bytemuck::cast(out)

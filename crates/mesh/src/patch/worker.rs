@@ -402,7 +402,7 @@ fn deal(layout: &Layout, cells: &[Cell], patches: &[u32], first: u32, out: &mut 
         // The last eight may have been in the eight before.
         for from in (0..per).step_by(LANES).map(|from| from.min(last)) {
             let Some(eight) = places[from..].first_chunk::<LANES>() else { continue };
-            let turned = turn.turn(eight.map(|place| &cells[usize::from(place)]));
+            let turned = turn.turn(cells, eight);
             for (points, &q) in turned.iter().zip(patches) {
                 part[at(q) + from..][..LANES].copy_from_slice(bytemuck::cast_slice(points));
             }

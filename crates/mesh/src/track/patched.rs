@@ -29,15 +29,15 @@ pub(crate) struct Patched {
 }
 
 impl Track {
-    /// Takes the buffers of a level with the same counts and faces.
-    pub(crate) fn reuse(&mut self, old: Refined) {
+    /// Takes the buffers of another level, and its corners if they are the `same`.
+    pub(crate) fn reuse(&mut self, old: Refined, same: bool) {
         if self.patched.from.is_none() || !self.new_points.is_empty() {
             return;
         }
         self.new_points = old.points;
         self.patched.normals = old.known_normals.filter(|_| self.patched.shaded).unwrap_or_default();
         if let Faces::Quads(corners) | Faces::Triangles(corners) = old.faces {
-            (self.corners, self.patched.listed) = (corners, true);
+            (self.corners, self.patched.listed) = (corners, same);
         }
     }
 
@@ -64,12 +64,12 @@ impl Track {
         let progress = match &mut self.patched.patches {
             Some(patches) => {
                 let [counts, _] = patches.counts();
-                zeroed(&mut self.new_points, counts.vertices as usize);
-                zeroed(
+                fit(&mut self.new_points, counts.vertices as usize);
+                fit(
                     &mut self.patched.normals,
-                    if self.patched.shaded && patches.can_shade() { counts.vertices as usize } else { 0 },
+                    if self.patched.shaded { counts.vertices as usize } else { 0 },
                 );
-                zeroed(&mut self.corners, counts.corners as usize);
+                fit(&mut self.corners, counts.corners as usize);
                 let (points, normals) = (&mut self.new_points[..], &mut self.patched.normals[..]);
                 let corners = if self.patched.listed { &mut [] } else { &mut self.corners[..] };
                 let old = self.points.as_deref().unwrap_or(&mesh.positions);
@@ -94,5 +94,16 @@ impl Track {
             }
         }
         None
+    }
+}
+
+/// Makes a buffer that is written all over of that length: what is in it may stay, if there is room, and not much more.
+fn fit<T: Clone + bytemuck::Zeroable>(buffer: &mut Vec<T>, length: usize) {
+    if length > 0 && (length..=2 * length).contains(&buffer.capacity()) {
+        buffer.resize(length, T::zeroed());
+    } else {
+        // Two at once are never held.
+        *buffer = Vec::new();
+        zeroed(buffer, length);
     }
 }
