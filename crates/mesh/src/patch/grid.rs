@@ -33,13 +33,15 @@ impl Cell {
     /// The point in a lane.
     #[inline(always)]
     pub(super) fn point(&self, lane: usize) -> [f32; 3] {
-        self.0.map(|values| values[lane])
+        let [x, y, z] = &self.0;
+        [x[lane], y[lane], z[lane]]
     }
 
     /// Sets the point in a lane.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, point: [f32; 3]) {
-        self.0.iter_mut().zip(point).for_each(|(values, x)| values[lane] = x);
+        let [x, y, z] = &mut self.0;
+        [x[lane], y[lane], z[lane]] = point;
     }
 }
 

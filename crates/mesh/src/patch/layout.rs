@@ -16,6 +16,7 @@
 //!
 //! Cost: linear in a patch's points, once a depth. Limit: depths up to 7 (16-bit grid indices).
 
+use super::grid::LANES;
 use crate::split::Split;
 use crate::topology::{Connectivity, Counts, boundary_rank, is_boundary};
 
@@ -62,15 +63,15 @@ pub(super) struct Layout {
     pub m: usize,
     /// Points of the grid.
     pub points: usize,
-    /// Runs of points by rising ids, and the place in the grid of each of their points.
+    /// Runs of points by rising ids, and the place in the grid of each of their points: of each run at least eight, the last
+    /// place again and again.
     pub runs: Vec<Run>,
     pub places: Vec<u16>,
-    /// Runs of faces by rising ids, and per corner of theirs (a multiple of `sides`) the id as `faces[..][0] + faces[..][1] q`.
+    /// Runs of faces by rising ids, and the place in the grid of each corner of theirs, at least eight as well.
     pub face_runs: Vec<Run>,
-    pub faces: Vec<u32>,
-    pub face_steps: Vec<u32>,
-    /// Of every run of faces, its corners that lie on the border: which corner, and which border point.
-    pub on_border: Vec<Vec<[u16; 2]>>,
+    pub faces: Vec<u16>,
+    /// The id of the point at each place, as `[0] + [1] q`, where a patch owns it alone.
+    pub ids: Vec<[u32; 2]>,
     /// The place of border point (side, position), `m` a side; position 0 is the side's first corner.
     pub border: Vec<u16>,
     /// Of every side, next to each side that may lie across, and to none.
@@ -129,8 +130,7 @@ impl Layout {
             places: Vec::new(),
             face_runs: Vec::new(),
             faces: Vec::new(),
-            face_steps: Vec::new(),
-            on_border: Vec::new(),
+            ids: Vec::new(),
             border: Vec::new(),
             seams: Vec::new(),
             counts: [levels[depth as usize], levels[depth as usize - 1]],
@@ -180,12 +180,12 @@ impl Layout {
         frames.iter().for_each(|frame| list(frame, &mut points));
         debug_assert_eq!(points.len(), per as usize);
         self.runs.push(Run { base, per, first: self.places.len() });
-        let places: Vec<u16> = points.iter().map(|&p| self.place(p)).collect();
-        self.places.extend(places);
+        let places = points.iter().map(|&p| self.place(p)).collect();
+        self.places.extend(in_eights(places));
     }
 
     /// The places of the points of a run.
-    pub(super) fn places_of(&self, run: &Run) -> &[u16] {
+    fn places_of(&self, run: &Run) -> &[u16] {
         &self.places[run.first..run.first + run.per as usize]
     }
 
@@ -255,31 +255,21 @@ impl Layout {
 
     fn list_faces(&mut self, mut families: Vec<Family>) {
         families.sort_by_key(|family| family.base);
-        let own = self.owned();
-        let mut slot = vec![NONE; self.points];
-        for (slot_of, &place) in (0..).zip(&self.border) {
-            slot[usize::from(place)] = slot_of;
-        }
+        self.ids = self.owned();
         for family in families {
-            let first = self.faces.len();
-            let mut on_border = Vec::new();
-            self.face_runs.push(Run { base: family.base, per: family.per, first });
-            for frame in family.frames {
-                for &p in &frame.0[..self.sides] {
-                    let place = usize::from(self.place(p));
-                    if slot[place] != NONE {
-                        on_border.push([(self.faces.len() - first) as u16, slot[place] as u16]);
-                        self.faces.push(0);
-                        self.face_steps.push(0);
-                    } else {
-                        self.faces.push(own[place][0]);
-                        self.face_steps.push(own[place][1]);
-                    }
-                }
-            }
-            self.on_border.push(on_border);
+            self.face_runs.push(Run { base: family.base, per: family.per, first: self.faces.len() });
+            let corners = family.frames.iter().flat_map(|frame| &frame.0[..self.sides]);
+            let places = corners.map(|&p| self.place(p)).collect();
+            self.faces.extend(in_eights(places));
         }
     }
+}
+
+/// Repeats the last place until there are eight.
+fn in_eights(mut places: Vec<u16>) -> Vec<u16> {
+    let last = places.last().copied().unwrap_or_default();
+    places.resize(places.len().max(LANES), last);
+    places
 }
 
 impl Family {

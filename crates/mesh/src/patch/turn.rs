@@ -1,4 +1,4 @@
-//! Points of eight patches, told apart: from one patch a lane to one patch after the other.
+//! Eight patches, told apart: from one patch a lane to one patch after the other.
 //!
 //! ```text
 //!   cells of 8 places    x x x x x x x x          patch 0   x y z x y z ..   of the 8 places
@@ -6,36 +6,61 @@
 //!                        z z z z z z z z ..       ..
 //! ```
 //!
-//! That is a 24x8 matrix turned round, as three of 8x8, each by exchanges of halves, quarters and neighbours. Nothing is
-//! computed, so all ways give the same bits: in vectors of eight where the processor has them, of four on the web, and one by
-//! one elsewhere. Compilers do not find this themselves.
+//! That is a 24x8 matrix turned round (of vertex ids 8x8), square by square, by exchanges of halves, quarters and neighbours.
+//! Nothing is computed, so all ways give the same bits: in vectors of eight where the processor has them, and one by one
+//! elsewhere. Compilers do not find this themselves.
 //!
 //! Cost: about a shuffle a point; one by one three loads and three stores.
 
 use super::grid::{Cell, LANES};
 
-/// Eight points, coordinate by coordinate.
-pub(super) type Eight = [f32; 3 * LANES];
+/// A value of each of eight patches, or eight of one.
+pub(super) type Eight = [u32; LANES];
 
 /// A way to tell patches apart.
 pub(super) trait Turn: Copy {
-    /// The points at eight places, patch by patch.
-    fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES];
+    /// Column i of a square as its row i.
+    fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES];
+
+    /// The points at eight places, patch by patch: coordinates, three rows of eight.
+    #[inline(always)]
+    fn points(self, cells: &[Cell], places: &[u16; LANES]) -> [[Eight; 3]; LANES] {
+        let mut rows = [[0; LANES]; 3 * LANES];
+        for (rows, &place) in rows.as_chunks_mut::<3>().0.iter_mut().zip(places) {
+            *rows = bytemuck::cast(cells[usize::from(place)].0);
+        }
+        let mut out = [[[0; LANES]; 3]; LANES];
+        for (third, rows) in rows.as_chunks::<LANES>().0.iter().enumerate() {
+            let turned = self.square(rows);
+            for (out, turned) in out.iter_mut().zip(turned) {
+                out[third] = turned;
+            }
+        }
+        out
+    }
+
+    /// The ids at eight places, patch by patch.
+    #[inline(always)]
+    fn ids(self, ids: &[Eight], places: &[u16; LANES]) -> [Eight; LANES] {
+        let mut rows = [[0; LANES]; LANES];
+        for (row, &place) in rows.iter_mut().zip(places) {
+            *row = ids[usize::from(place)];
+        }
+        self.square(&rows)
+    }
 }
 
-/// One by one, or as the web can.
+/// One by one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plain;
 
 impl Turn for Plain {
     #[inline(always)]
-    fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
-        let mut out = [[0.0; 3 * LANES]; LANES];
-        for (i, &place) in places.iter().enumerate() {
-            for (k, values) in cells[usize::from(place)].0.iter().enumerate() {
-                for (out, value) in out.iter_mut().zip(values) {
-                    out[3 * i + k] = *value;
-                }
+    fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES] {
+        let mut out = [[0; LANES]; LANES];
+        for (i, out) in out.iter_mut().enumerate() {
+            for (x, row) in out.iter_mut().zip(rows) {
+                *x = row[i];
             }
         }
         out
@@ -47,7 +72,7 @@ pub(super) use wide::Wide;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    use super::{Cell, Eight, LANES, Turn};
+    use super::{Eight, LANES, Turn};
     use std::arch::x86_64::*;
 
     /// Says that the processor has vectors of eight (AVX2).
@@ -63,39 +88,33 @@ mod wide {
 
     impl Turn for Wide {
         #[inline(always)]
-        fn turn(self, cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
+        fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES] {
             // SAFETY: a `Wide` is made by `new` alone, which looks whether the processor has what this is compiled for.
-            unsafe { turn(cells, places) }
+            unsafe { square(rows) }
         }
     }
 
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn turn(cells: &[Cell], places: &[u16; LANES]) -> [Eight; LANES] {
-        let mut rows = [_mm256_setzero_ps(); 3 * LANES];
-        for (row, &place) in rows.as_chunks_mut::<3>().0.iter_mut().zip(places) {
-            let cell = &cells[usize::from(place)].0;
-            *row = [bytemuck::cast(cell[0]), bytemuck::cast(cell[1]), bytemuck::cast(cell[2])];
+    fn square(rows: &[Eight; LANES]) -> [Eight; LANES] {
+        let r: [__m256i; LANES] = bytemuck::cast(*rows);
+        let mut pairs = r;
+        for i in [0, 2, 4, 6] {
+            pairs[i] = _mm256_unpacklo_epi32(r[i], r[i + 1]);
+            pairs[i + 1] = _mm256_unpackhi_epi32(r[i], r[i + 1]);
         }
-        let mut out = [[[0.0f32; LANES]; 3]; LANES];
-        for (third, r) in rows.as_chunks::<LANES>().0.iter().enumerate() {
-            let mut pairs = *r;
-            for i in [0, 2, 4, 6] {
-                pairs[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
-                pairs[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
-            }
-            // Four patches' four points: of patches 0 to 3 in the lower halves, of 4 to 7 in the upper ones.
-            let mut fours = pairs;
-            for i in [0, 4] {
-                fours[i] = _mm256_shuffle_ps::<0x44>(pairs[i], pairs[i + 2]);
-                fours[i + 1] = _mm256_shuffle_ps::<0xee>(pairs[i], pairs[i + 2]);
-                fours[i + 2] = _mm256_shuffle_ps::<0x44>(pairs[i + 1], pairs[i + 3]);
-                fours[i + 3] = _mm256_shuffle_ps::<0xee>(pairs[i + 1], pairs[i + 3]);
-            }
-            for i in 0..4 {
-                out[i][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x20>(fours[i], fours[i + 4]));
-                out[i + 4][third] = bytemuck::cast(_mm256_permute2f128_ps::<0x31>(fours[i], fours[i + 4]));
-            }
+        // Of columns 0 to 3 in the lower halves, of 4 to 7 in the upper ones.
+        let mut fours = pairs;
+        for i in [0, 4] {
+            fours[i] = _mm256_unpacklo_epi64(pairs[i], pairs[i + 2]);
+            fours[i + 1] = _mm256_unpackhi_epi64(pairs[i], pairs[i + 2]);
+            fours[i + 2] = _mm256_unpacklo_epi64(pairs[i + 1], pairs[i + 3]);
+            fours[i + 3] = _mm256_unpackhi_epi64(pairs[i + 1], pairs[i + 3]);
+        }
+        let mut out = r;
+        for i in 0..4 {
+            out[i] = _mm256_permute2x128_si256::<0x20>(fours[i], fours[i + 4]);
+            out[i + 4] = _mm256_permute2x128_si256::<0x31>(fours[i], fours[i + 4]);
         }
         bytemuck::cast(out)
     }

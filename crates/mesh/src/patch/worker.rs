@@ -14,7 +14,7 @@ use super::class::Classes;
 use super::grid::{self, Cell, LANES, Spline};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
-use super::turn::{Plain, Turn};
+use super::turn::{Eight, Plain, Turn};
 use super::{Anchor, Kept, Out, Point};
 use crate::plan::Step;
 use crate::scheme::{Rules, Tags};
@@ -53,7 +53,9 @@ struct Room {
     points: Vec<Cell>,
     normals: Vec<Cell>,
     rows: Vec<Cell>,
-    ids: Vec<u32>,
+    /// The ids of points, place by place, and of one side.
+    ids: Vec<Eight>,
+    side: Vec<u32>,
 }
 
 /// Sides of patches on the boundary, with their `m` points and normals.
@@ -143,7 +145,8 @@ impl Worker {
                 points: grid::room(layout.m),
                 normals: grid::room(layout.m),
                 rows: Vec::new(),
-                ids: vec![0; layout.sides * layout.m],
+                ids: vec![[0; LANES]; layout.points],
+                side: vec![0; layout.m],
             },
             rims: Rims::default(),
         }
@@ -379,8 +382,47 @@ impl Room {
                     }
                 }
             }
-            if !target.corners.is_empty() {
-                list(layout, c, (q, i), &mut self.ids, &mut target.corners);
+        }
+        if !target.corners.is_empty() {
+            self.list(layout, c, patches, target, turn);
+        }
+    }
+
+    /// The corners of patches' faces.
+    #[inline(always)]
+    fn list<C: Connectivity>(
+        &mut self,
+        layout: &Layout,
+        c: &C,
+        patches: &[u32],
+        target: &mut Target<'_>,
+        turn: impl Turn,
+    ) {
+        let (sides, m) = (layout.sides as u32, layout.m);
+        let mut q = [0; LANES];
+        q.iter_mut().zip(patches).for_each(|(q, patch)| *q = *patch);
+        for (ids, &[base, per]) in self.ids.iter_mut().zip(&layout.ids) {
+            for l in 0..LANES {
+                ids[l] = base.wrapping_add(per.wrapping_mul(q[l]));
+            }
+        }
+        for (lane, &q) in patches.iter().enumerate() {
+            for (h, border) in (sides * q..).zip(layout.border.chunks_exact(m)) {
+                let (seam, other) = layout.seam(c, h);
+                seam.ids(q, other, &mut self.side);
+                self.side[0] = c.origin(h);
+                self.side[m / 2] = layout.first_edge + c.edge(h);
+                for (&id, &place) in self.side.iter().zip(border) {
+                    self.ids[usize::from(place)][lane] = id;
+                }
+            }
+        }
+        for (run, part) in layout.face_runs.iter().zip(&mut target.corners) {
+            let per = run.per as usize * layout.sides;
+            for (from, places) in eights(&layout.faces, run.first, per) {
+                for (ids, &q) in turn.ids(&self.ids, places).iter().zip(patches) {
+                    put(ids, part, (q - target.first) as usize * per + from, per);
+                }
             }
         }
     }
@@ -390,47 +432,44 @@ impl Room {
 #[inline(always)]
 fn deal(layout: &Layout, cells: &[Cell], patches: &[u32], first: u32, out: &mut [&mut [Point]], turn: impl Turn) {
     for (run, part) in layout.runs.iter().zip(out) {
-        let (per, places) = (run.per as usize, layout.places_of(run));
-        let at = |q: u32| (q - first) as usize * per;
-        let Some(last) = per.checked_sub(LANES) else {
-            for (lane, &q) in patches.iter().enumerate() {
-                let out = &mut part[at(q)..][..per];
-                out.iter_mut().zip(places).for_each(|(out, &place)| *out = cells[usize::from(place)].point(lane));
-            }
-            continue;
-        };
-        // The last eight may have been in the eight before.
-        for from in (0..per).step_by(LANES).map(|from| from.min(last)) {
-            let Some(eight) = places[from..].first_chunk::<LANES>() else { continue };
-            let turned = turn.turn(cells, eight);
-            for (points, &q) in turned.iter().zip(patches) {
-                part[at(q) + from..][..LANES].copy_from_slice(bytemuck::cast_slice(points));
+        let per = run.per as usize;
+        for (from, places) in eights(&layout.places, run.first, per) {
+            for (points, &q) in turn.points(cells, places).iter().zip(patches) {
+                let points: &[Point; LANES] = bytemuck::cast_ref(points);
+                put(points, part, (q - first) as usize * per + from, per);
             }
         }
     }
 }
 
-/// The corners of patch `q`'s faces, the i-th of the target.
+/// The places of a run from its first on, eight by eight, and where in the run these begin: the last eight may have been in
+/// the eight before.
 #[inline(always)]
-fn list<C: Connectivity>(layout: &Layout, c: &C, (q, i): (u32, usize), ids: &mut [u32], out: &mut [&mut [u32]]) {
-    let (sides, m) = (layout.sides, layout.m);
-    for (side, ids) in ids.chunks_exact_mut(m).enumerate() {
-        let h = (sides as u32) * q + side as u32;
-        let (seam, other) = layout.seam(c, h);
-        seam.ids(q, other, ids);
-        ids[0] = c.origin(h);
-        ids[m / 2] = layout.first_edge + c.edge(h);
+fn eights(places: &[u16], first: usize, per: usize) -> impl Iterator<Item = (usize, &[u16; LANES])> {
+    let last = per.saturating_sub(LANES);
+    (0..per).step_by(LANES).filter_map(move |from| {
+        let from = from.min(last);
+        Some((from, places[first + from..].first_chunk()?))
+    })
+}
+
+/// Copies eight, or as many as a run has if these are fewer.
+#[inline(always)]
+fn put<T: Copy>(eight: &[T; LANES], out: &mut [T], at: usize, per: usize) {
+    if per >= LANES {
+        // One length that is known is a few moves, and not a call.
+        out[at..at + LANES].copy_from_slice(eight);
+        return;
     }
-    for ((run, part), on_border) in layout.face_runs.iter().zip(out).zip(&layout.on_border) {
-        let per = run.per as usize * sides;
-        let range = run.first..run.first + per;
-        let part = &mut part[i * per..(i + 1) * per];
-        let template = layout.faces[range.clone()].iter().zip(&layout.face_steps[range]);
-        for (corner, (base, step)) in part.iter_mut().zip(template) {
-            *corner = base.wrapping_add(step.wrapping_mul(q));
-        }
-        for &[at, slot] in on_border {
-            part[usize::from(at)] = ids[usize::from(slot)];
-        }
+    let (four, rest) = out[at..at + per].split_at_mut(per & 4);
+    let (two, one) = rest.split_at_mut(per & 2);
+    if let (Some(four), Some(from)) = (four.first_chunk_mut::<4>(), eight.first_chunk()) {
+        *four = *from;
+    }
+    if let (Some(two), Some(from)) = (two.first_chunk_mut::<2>(), eight[per & 4..].first_chunk()) {
+        *two = *from;
+    }
+    if let Some(one) = one.first_mut() {
+        *one = eight[per & 6];
     }
 }
