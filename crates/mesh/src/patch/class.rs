@@ -8,7 +8,7 @@
 //!    class                        classes           = children's table_(d-1) x rows
 //! ```
 //!
-//! No rule of any scheme stands here: whoever says that its children depend on one ring (`Scheme::RING`) has tables, with
+//! No rule of any scheme stands here: whoever says that its children depend on one ring (`Scheme::REACH`) has tables, with
 //! rims, creases (semi-sharp ones too: a child's ring is less sharp) and any valence. Sums in f64.
 //!
 //! Cost: about the squared size of the ring times the points of the grid, once a class and depth. Memory: 4 bytes times the

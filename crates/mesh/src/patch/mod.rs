@@ -16,7 +16,7 @@
 //! general engine's, which everything downstream goes on using; a numbering of its own (corners, edges, interiors)
 //! would need a second way of everything.
 //!
-//! Which schemes: those whose children depend on one ring ([`crate::scheme::Scheme::RING`]). Which steps: the last ones of
+//! Which schemes: those whose children depend on one ring ([`crate::scheme::Scheme::REACH`]). Which steps: the last ones of
 //! a plan, if they are at least two of one scheme and nothing happens between. Where patches have too many kinds of rings
 //! (every crease of another sharpness), or a ring that cannot be unfolded, the general engine goes on from the same level.
 //!
@@ -35,7 +35,7 @@ mod worker;
 
 use crate::mesh::Mesh;
 use crate::plan::{PATCHED, Plan, Step};
-use crate::scheme::{Boundary, Rules, Tags};
+use crate::scheme::{Boundary, Reach, Rules, Tags};
 use crate::split::{Level, on};
 use crate::topology::{Connectivity, Counts};
 pub use drag::{Drag, Moved};
@@ -59,7 +59,7 @@ pub(crate) fn start(mesh: &Mesh, plan: &Plan, steps: &[Step]) -> Option<u32> {
     // What carries colours, ties copies or leaves faces out goes level by level.
     let all_shown = mesh.holes.is_empty() && (plan.rules.boundary != Boundary::None || mesh.counts().boundary == 0);
     let plain = mesh.colors.is_empty() && mesh.tied.is_empty() && all_shown;
-    if !last.scheme.ring || plan.closes() || !plain {
+    if last.scheme.reach == Reach::Far || plan.closes() || !plain {
         return None;
     }
     let same = |step: &Step| step.scheme == last.scheme && step.params == last.params && step.split == last.split;

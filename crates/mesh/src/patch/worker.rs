@@ -17,7 +17,7 @@ use super::ring::Ring;
 use super::turn::{Eight, Plain, Turn};
 use super::{Anchor, Kept, Out, Point};
 use crate::plan::Step;
-use crate::scheme::{Rules, Tags};
+use crate::scheme::{Reach, Rules, Tags};
 use crate::topology::{Connectivity, is_boundary};
 use std::ops::Range;
 
@@ -35,11 +35,12 @@ pub(super) struct Worker {
     rims: Rims,
 }
 
-/// Patches of a class, and the control points of each.
+/// Patches of a class, and the control points of each: control by control, a patch a lane. Numbers that were stored one by one
+/// are not read as vectors here: that would wait until everything stored before is in the cache, results among it.
 #[derive(Debug, Default)]
 struct Waiting {
     patches: Vec<u32>,
-    controls: Vec<u32>,
+    controls: Vec<Eight>,
 }
 
 /// The grids of eight patches.
@@ -139,7 +140,7 @@ impl Worker {
             ring: Ring::default(),
             waiting: vec![Waiting::default()],
             room: Room {
-                spline: (step.scheme.info.id == "catmull-clark").then(|| Spline::new(layout.depth)),
+                spline: (step.scheme.reach == Reach::Spline).then(|| Spline::new(layout.depth)),
                 controls: Vec::new(),
                 lone: Vec::new(),
                 points: grid::room(layout.m),
@@ -222,22 +223,23 @@ impl Worker {
             let Some(class) = ready.take() else { break };
             room.evaluate(layout, classes, class, &waiting[class], old, !target.normals.is_empty());
             room.hand_out(layout, c, &waiting[class].patches, rims, (target, turn));
-            waiting[class].clear();
+            waiting[class].patches.clear();
         }
         if finish {
             let mut group: Vec<u32> = Vec::new();
             for class in 0..waiting.len() {
-                let Waiting { patches, controls } = &mut waiting[class];
-                let each = controls.len() / patches.len().max(1);
-                for (&q, controls) in patches.iter().zip(controls.chunks_exact(each.max(1))) {
-                    room.evaluate_one(layout, classes, class, controls, old, (group.len(), !target.normals.is_empty()));
+                let Waiting { patches, controls } = &waiting[class];
+                for (from, &q) in patches.iter().enumerate() {
+                    room.lone.clear();
+                    room.lone.extend(controls.iter().map(|control| old[control[from] as usize]));
+                    room.evaluate_one(layout, classes, class, (group.len(), !target.normals.is_empty()));
                     group.push(q);
                     if group.len() == LANES {
                         room.hand_out(layout, c, &group, rims, (target, turn));
                         group.clear();
                     }
                 }
-                waiting[class].clear();
+                waiting[class].patches.clear();
             }
             if !group.is_empty() {
                 room.hand_out(layout, c, &group, rims, (target, turn));
@@ -250,16 +252,21 @@ impl Worker {
 impl Waiting {
     #[inline(always)]
     fn add(&mut self, q: u32, ring: &Ring, active: Option<&[u16]>) {
+        let lane = self.patches.len();
         self.patches.push(q);
+        self.controls.resize(active.map_or(ring.controls.len(), <[u16]>::len), [0; LANES]);
         match active {
-            Some(active) => self.controls.extend(active.iter().map(|&k| ring.controls[usize::from(k)])),
-            None => self.controls.extend_from_slice(&ring.controls),
+            Some(active) => {
+                for (control, &k) in self.controls.iter_mut().zip(active) {
+                    control[lane] = ring.controls[usize::from(k)];
+                }
+            }
+            None => {
+                for (control, &v) in self.controls.iter_mut().zip(&ring.controls) {
+                    control[lane] = v;
+                }
+            }
         }
-    }
-
-    fn clear(&mut self) {
-        self.patches.clear();
-        self.controls.clear();
     }
 }
 
@@ -311,14 +318,13 @@ impl Room {
         old: &[Point],
         shaded: bool,
     ) {
-        let each = group.controls.len() / group.patches.len().max(1);
         self.controls.clear();
-        self.controls.resize(each, Cell::ZERO);
-        for lane in 0..LANES {
-            let from = lane.min(group.patches.len() - 1) * each;
-            for (cell, &v) in self.controls.iter_mut().zip(&group.controls[from..from + each]) {
-                cell.set(lane, old[v as usize]);
-            }
+        let last = group.patches.len().clamp(1, LANES) - 1;
+        for control in &group.controls {
+            let at = |lane: usize| old[control[lane.min(last)] as usize];
+            let p = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
+            let along = |k: usize| [p[0][k], p[1][k], p[2][k], p[3][k], p[4][k], p[5][k], p[6][k], p[7][k]];
+            self.controls.push(Cell([along(0), along(1), along(2)]));
         }
         if let (0, Some(spline)) = (class, &self.spline) {
             spline.evaluate(layout.m, &self.controls, shaded, &mut self.rows, &mut self.points);
@@ -327,19 +333,15 @@ impl Room {
         }
     }
 
-    /// The points of one patch, in a lane.
+    /// The points of a lone patch, in a lane.
     #[inline(always)]
     fn evaluate_one(
         &mut self,
         layout: &Layout,
         classes: &Classes,
         class: usize,
-        controls: &[u32],
-        old: &[Point],
         (lane, shaded): (usize, bool),
     ) {
-        self.lone.clear();
-        self.lone.extend(controls.iter().map(|&v| old[v as usize]));
         if let Some(table) = classes.get(class as u32 - 1) {
             table.evaluate_one(&self.lone, lane, &mut self.points[..Room::count(layout, shaded)]);
         }
@@ -358,6 +360,9 @@ impl Room {
         let (sides, m) = (layout.sides, layout.m);
         let shaded = !target.normals.is_empty();
         let first = target.first;
+        if !target.corners.is_empty() {
+            self.number(layout, c, patches);
+        }
         deal(layout, &self.points, patches, first, &mut target.points, turn);
         if shaded {
             let size = (sides, m, layout.points);
@@ -384,20 +389,13 @@ impl Room {
             }
         }
         if !target.corners.is_empty() {
-            self.list(layout, c, patches, target, turn);
+            self.list(layout, patches, target, turn);
         }
     }
 
-    /// The corners of patches' faces.
+    /// The ids of patches' points: long before they are read, see [`Waiting`].
     #[inline(always)]
-    fn list<C: Connectivity>(
-        &mut self,
-        layout: &Layout,
-        c: &C,
-        patches: &[u32],
-        target: &mut Target<'_>,
-        turn: impl Turn,
-    ) {
+    fn number<C: Connectivity>(&mut self, layout: &Layout, c: &C, patches: &[u32]) {
         let (sides, m) = (layout.sides as u32, layout.m);
         let mut q = [0; LANES];
         q.iter_mut().zip(patches).for_each(|(q, patch)| *q = *patch);
@@ -417,6 +415,11 @@ impl Room {
                 }
             }
         }
+    }
+
+    /// The corners of patches' faces.
+    #[inline(always)]
+    fn list(&self, layout: &Layout, patches: &[u32], target: &mut Target<'_>, turn: impl Turn) {
         for (run, part) in layout.face_runs.iter().zip(&mut target.corners) {
             let per = run.per as usize * layout.sides;
             for (from, places) in eights(&layout.faces, run.first, per) {

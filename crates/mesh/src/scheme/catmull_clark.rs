@@ -14,7 +14,7 @@
 //!
 //! Cost: about 20 ns an output face. Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Creasing, Family, Info, Scheme, Tags, TriangleRule, edge_point, face_centroids, vertex_point};
+use super::{Accepts, Creasing, Family, Info, Reach, Scheme, Tags, TriangleRule, edge_point, face_centroids, vertex_point};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -43,7 +43,7 @@ impl Scheme for CatmullClark {
     const COMMON: bool = true;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::CatmullClark;
-    const RING: bool = true;
+    const REACH: Reach = Reach::Spline;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

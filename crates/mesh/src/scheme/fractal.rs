@@ -16,7 +16,7 @@
 //! neighbours along it fit, and so do the sheets at a cut edge. Colours and texture coordinates are not displaced. Not affine
 //! invariant, and other numbers of vertices give another surface. Cost: the scheme's, and one hash a new point.
 
-use super::{Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Scheme, Tags, entry};
+use super::{Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Reach, Scheme, Tags, entry};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::{Level, Split};
@@ -67,7 +67,7 @@ pub(super) const fn fractal() -> Entry {
         return Entry {
             info: INFO,
             common: false,
-            ring: false,
+            reach: Reach::Far,
             limit: LimitRule::Analysis,
             honours: Honours::ALL,
             eval: |_, _, _, _| (),
@@ -77,7 +77,7 @@ pub(super) const fn fractal() -> Entry {
     Entry {
         info: INFO,
         common: false,
-        ring: false,
+        reach: Reach::Far,
         limit: LimitRule::Analysis,
         honours: Honours::ALL,
         eval: |level, split, tags, sink| rules(level, split, tags, sink),

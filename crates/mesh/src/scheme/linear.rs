@@ -13,7 +13,7 @@
 //!
 //! Cost: about 8 ns an output face. Limit: it never smooths.
 
-use super::{Accepts, Creasing, Family, Info, Scheme, Tags, face_centroids};
+use super::{Accepts, Creasing, Family, Info, Reach, Scheme, Tags, face_centroids};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -38,7 +38,7 @@ impl Scheme for Linear {
 
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Itself;
-    const RING: bool = true;
+    const REACH: Reach = Reach::Ring;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, _: Tags<'_>, sink: &mut K) {

@@ -17,7 +17,7 @@
 //!
 //! Cost: about 12 ns an output face (half a vertex each). Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Creasing, Domain, Family, Info, Param, Scheme, Tags, edge_point, vertex_point};
+use super::{Accepts, Creasing, Domain, Family, Info, Param, Reach, Scheme, Tags, edge_point, vertex_point};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -68,7 +68,7 @@ impl Scheme for Loop {
     const COMMON: bool = true;
     const CREASES: Creasing = Creasing::Rules;
     const LIMIT: LimitRule = LimitRule::Loop;
-    const RING: bool = true;
+    const REACH: Reach = Reach::Ring;
 
     #[inline(always)]
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K) {

@@ -47,7 +47,7 @@ pub use nurss::Nurss;
 pub use params::{Domain, MOST_PARAMS, Param, Params};
 pub use poke::Poke;
 pub use quad_triangle::QuadTriangle;
-pub use rules::{Boundary, Decay, FaceVarying, Rules, TriangleRule};
+pub use rules::{Boundary, Decay, FaceVarying, Reach, Rules, TriangleRule};
 pub use sqrt3::Sqrt3;
 pub use tags::Tags;
 pub use tri_to_quad::TriToQuad;
@@ -202,9 +202,8 @@ pub trait Scheme: 'static {
     /// How the limit of its vertices is found.
     const LIMIT: LimitRule = LimitRule::Analysis;
 
-    /// Whether what it makes inside a face, and around the faces made there, depends on the faces around that face alone. Then
-    /// many levels are made at once, a face after the other (`patch/`).
-    const RING: bool = false;
+    /// What the points inside a face depend on, however often it is cut: the faces around it alone, or more.
+    const REACH: Reach = Reach::Far;
 
     /// States all rules of one refinement of `c` by `split`: passes in order, later ones may read earlier children.
     fn rules<C: Connectivity, K: Sink>(c: &C, split: Split, tags: Tags<'_>, sink: &mut K);
@@ -258,9 +257,9 @@ pub struct Entry {
     pub limit: LimitRule,
     /// [`Scheme::COMMON`].
     pub common: bool,
-    /// [`Scheme::RING`].
+    /// [`Scheme::REACH`].
     #[cfg_attr(not(feature = "full"), expect(dead_code))]
-    pub(crate) ring: bool,
+    pub(crate) reach: Reach,
     /// Which marks mean something to it.
     pub honours: Honours,
     eval: EvalFn,
@@ -288,7 +287,7 @@ const fn entry<S: Scheme>() -> Entry {
     };
     // Papers are told about by the build that has their rules.
     let info = Info { source: if FULL { S::INFO.source } else { "" }, ..S::INFO };
-    Entry { info, common: S::COMMON, ring: S::RING, honours, limit: S::LIMIT, eval, record }
+    Entry { info, common: S::COMMON, reach: S::REACH, honours, limit: S::LIMIT, eval, record }
 }
 
 /// Which kinds of levels a scheme can meet follows from what it takes and makes; the others are not compiled.

@@ -23,7 +23,7 @@
 
 use super::loop_::beta;
 use super::{
-    Accepts, CatmullClark, Creasing, Entry, Family, Honours, Info, Loop, Scheme, Tags, edge_point, entry, vertex_point,
+    Accepts, CatmullClark, Creasing, Entry, Family, Honours, Info, Loop, Reach, Scheme, Tags, edge_point, entry, vertex_point,
 };
 use crate::sink::{Row, Sink};
 use crate::split::Split;
@@ -42,7 +42,7 @@ pub(super) const fn quad_triangle() -> Entry {
     Entry {
         info: QuadTriangle::INFO,
         common: QuadTriangle::COMMON,
-        ring: false,
+        reach: Reach::Far,
         honours: Honours::ALL,
         limit: QuadTriangle::LIMIT,
         eval: |level, split, tags, sink| match split {

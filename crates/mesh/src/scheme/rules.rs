@@ -70,3 +70,14 @@ pub struct Rules {
     /// What seams do to texture coordinates.
     pub face_varying: FaceVarying,
 }
+
+/// What the points inside a face depend on, however often it is cut, and so how many levels can be made at once (`patch/`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// More than the faces around it: level by level.
+    Far,
+    /// The faces around it alone: a face after the other.
+    Ring,
+    /// The same; and where all of these are quads, four at every vertex, points are those of a uniform bicubic B-spline.
+    Spline,
+}
