@@ -153,9 +153,8 @@ fn main() {
         };
         let limits = [stores(points), stores(2 * points + corners)].map(|t| t * 1e9 / faces as f64);
         drop(buffer);
-        let ns = |[median, best]: [f64; 2]| {
-            format!("{:.2} ({:.2})", median * 1e9 / faces as f64, best * 1e9 / faces as f64)
-        };
+        let ns =
+            |[median, best]: [f64; 2]| format!("{:.2} ({:.2})", median * 1e9 / faces as f64, best * 1e9 / faces as f64);
         let once = |alone: Option<usize>| model.first_load(alone) * 1e9 / faces as f64;
         println!(
             "{:<20} {:<14} {:>2} {faces:>9} {:>14} {:>6.2} {:>14} {:>6.2} {:>11.2} {:>6.2}",

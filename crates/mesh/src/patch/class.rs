@@ -25,7 +25,8 @@ use crate::scheme::{Boundary, Rules, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Topology};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, PoisonError};
 
 /// Weights of one point: (control point, weight).
 type SparseRow = Vec<(u32, f64)>;
@@ -86,17 +87,28 @@ struct Grid {
 /// No place.
 const INSIDE: u16 = u16::MAX;
 
+/// The classes that all threads together have made tables of: beyond a number they do not pay. Whether they do must not depend
+/// on who met which.
+#[derive(Debug, Default)]
+pub(super) struct Tabled {
+    pub most: usize,
+    met: Mutex<BTreeSet<Vec<u32>>>,
+}
+
+impl Tabled {
+    /// Counts the class with this key; false if it is one too many.
+    pub(super) fn admits(&self, key: &[u32]) -> bool {
+        let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
+        met.contains(key) || (met.len() < self.most && met.insert(key.to_vec()))
+    }
+}
+
 impl Classes {
     pub(super) fn new(step: Step, rules: Rules, layout: &Layout) -> Classes {
         let grids = (0..=layout.depth).map(|d| Grid::new(layout.sides, d)).collect();
         let rules = Rules { boundary: Boundary::EdgeOnly, ..rules };
         let (numbers, classes) = Default::default();
         Classes { step, rules, depth: layout.depth, numbers, classes, grids, tables: Vec::new() }
-    }
-
-    /// How many classes need a table.
-    pub(super) fn tabled(&self) -> usize {
-        self.tables.iter().flatten().count()
     }
 
     /// The number of the class with this key, known or not. None if its ring cannot be unfolded.

@@ -87,14 +87,7 @@ impl Spline {
 
     /// The grids of regular quad patches, and their strips if they are `shaded`: `controls` as [`super::ring::Ring`] lists them.
     #[inline(always)]
-    pub(super) fn evaluate(
-        &self,
-        m: usize,
-        controls: &[Cell],
-        shaded: bool,
-        rows: &mut Vec<Cell>,
-        out: &mut [Cell],
-    ) {
+    pub(super) fn evaluate(&self, m: usize, controls: &[Cell], shaded: bool, rows: &mut Vec<Cell>, out: &mut [Cell]) {
         // The ring as rows, from below left.
         const ROWS: [[usize; 4]; 4] = [[5, 6, 7, 8], [4, 0, 1, 9], [15, 3, 2, 10], [14, 13, 12, 11]];
         let w = m + 1;

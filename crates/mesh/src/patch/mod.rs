@@ -38,11 +38,12 @@ use crate::plan::{PATCHED, Plan, Step};
 use crate::scheme::{Boundary, Reach, Rules, Tags};
 use crate::split::{Level, on};
 use crate::topology::{Connectivity, Counts};
+use class::Tabled;
 pub use drag::{Drag, Moved};
 use grid::MOST_STEPS;
 use layout::{Layout, Run};
 use std::ops::Range;
-use worker::{Start, Target, Worker};
+use worker::{Target, Worker};
 
 /// How deep a patch is cut at most: deeper ones would leave the caches.
 pub(crate) const DEEPEST: u32 = MOST_STEPS.ilog2();
@@ -50,6 +51,10 @@ pub(crate) const DEEPEST: u32 = MOST_STEPS.ilog2();
 /// Faces from which on threads share the work.
 #[cfg(feature = "parallel")]
 const MANY: usize = 1 << 16;
+
+/// Shares a thread: those who are done early take another.
+#[cfg(feature = "parallel")]
+const SHARES: u64 = 4;
 
 type Point = [f32; 3];
 
@@ -95,10 +100,11 @@ pub(crate) struct Patches {
     layout: Layout,
     step: Step,
     rules: Rules,
-    /// One a thread.
+    /// As many as threads have been at work.
     workers: Vec<Worker>,
-    /// Of each: its patches, and how many of these it has taken on.
+    /// Of each: its patches, and how many of these were taken on.
     shares: Vec<(Range<u32>, u32)>,
+    tabled: Tabled,
     kept: Kept,
     /// When patches are done, the next edge, then vertex.
     next: u32,
@@ -119,7 +125,16 @@ impl Patches {
     /// Prepares the patches of a level with `counts` to be cut `depth` times by `step`; none if ids leave 32 bits.
     pub(crate) fn new(step: Step, rules: Rules, depth: u32, counts: Counts) -> Option<Patches> {
         let layout = Layout::new(step.split, depth, counts)?;
-        Some(Patches { layout, step, rules, workers: Vec::new(), shares: Vec::new(), kept: Kept::default(), next: 0 })
+        Some(Patches {
+            layout,
+            step,
+            rules,
+            workers: Vec::new(),
+            shares: Vec::new(),
+            tabled: Tabled::default(),
+            kept: Kept::default(),
+            next: 0,
+        })
     }
 
     /// Counts of the last level, and of the one before.
@@ -207,11 +222,11 @@ impl Patches {
     ) {
         let sides = self.layout.sides as u32;
         self.workers.iter_mut().for_each(Worker::forget_rims);
-        let Patches { layout, workers, kept, .. } = self;
+        let Patches { layout, workers, kept, tabled, .. } = self;
         let whole = 0..c.faces();
         let mut targets = Target::cut(layout, std::slice::from_ref(&whole), out, kept);
         if let (Some(worker), Some(target)) = (workers.first_mut(), targets.first_mut()) {
-            let start = (c, tags, old);
+            let start = (c, tags, old, &*tabled);
             for group in patches.chunk_by(|a, b| a + 1 == *b) {
                 let range = group[0]..group[0] + group.len() as u32;
                 let of = |run: &Run| run.base + run.per * range.start..run.base + run.per * range.end;
@@ -231,36 +246,58 @@ impl Patches {
         self.boundary(c, out, |id| ids.push(id..id + 1));
     }
 
-    /// Shares the patches among threads: one, unless there is much to do and the feature `parallel` is on.
+    /// Cuts the patches into shares: one, unless there is much to do and the feature `parallel` is on.
     fn share(&mut self, patches: u32) {
         #[cfg(feature = "parallel")]
-        let n = if patches as usize * self.faces() >= MANY { rayon::current_num_threads() as u64 } else { 1 };
+        let n = if patches as usize * self.faces() >= MANY { SHARES * rayon::current_num_threads() as u64 } else { 1 };
         #[cfg(not(feature = "parallel"))]
         let n = 1;
         let at = |i: u64| (u64::from(patches) * i / n) as u32;
         self.shares = (0..n).map(|i| (at(i)..at(i + 1), 0)).collect();
-        let Patches { layout, step, rules, .. } = self;
-        self.workers = self.shares.iter().map(|_| Worker::new(*step, *rules, layout)).collect();
+        self.tabled.most = 24 + patches as usize / 16;
+        self.workers.push(Worker::new(self.step, self.rules, &self.layout));
     }
 
     /// Takes on up to `most` patches of every share; says how many, or none if patches do not pay.
-    fn run<C: Connectivity>(&mut self, most: u32, start: Start<'_, C>, out: &mut Out<'_>) -> Option<u32> {
-        let Patches { layout, workers, shares, kept, .. } = self;
+    fn run<C: Connectivity + Sync>(
+        &mut self,
+        most: u32,
+        (c, tags, old): (&C, &Tags<'_>, &[Point]),
+        out: &mut Out<'_>,
+    ) -> Option<u32> {
+        let Patches { layout, workers, shares, kept, tabled, .. } = self;
         let wholes: Vec<Range<u32>> = shares.iter().map(|(share, _)| share.clone()).collect();
         let mut targets = Target::cut(layout, &wholes, out, kept);
-        let layout = &*layout;
-        let work = |((worker, (share, taken)), target): ((&mut Worker, &mut (Range<u32>, u32)), &mut Target<'_>)| {
+        let (layout, start) = (&*layout, (c, tags, old, &*tabled));
+        let next = |(share, taken): &mut (Range<u32>, u32)| {
             let from = share.start + *taken;
             let to = from.saturating_add(most).min(share.end);
             *taken = to - share.start;
-            worker.run(layout, start, from..to, to == share.end, target).then_some(to - from)
+            from..to
         };
         #[cfg(feature = "parallel")]
         if wholes.len() > 1 {
             use rayon::prelude::*;
-            return workers.par_iter_mut().zip(shares).zip(&mut targets).map(work).sum();
+            let (step, rules) = (self.step, self.rules);
+            let idle = std::sync::Mutex::new(std::mem::take(workers));
+            let idle_now = || idle.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let work = |(share, target): (&mut (Range<u32>, u32), &mut Target<'_>)| {
+                let taken = idle_now().pop();
+                let mut worker = taken.unwrap_or_else(|| Worker::new(step, rules, layout));
+                let range = next(share);
+                // Who goes on with the share is not known: nothing may wait.
+                let fit = worker.run(layout, start, range.clone(), true, target);
+                idle_now().push(worker);
+                fit.then_some(range.len() as u32)
+            };
+            let sum = shares.par_iter_mut().zip(&mut targets).with_max_len(1).map(work).sum();
+            *workers = idle.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+            return sum;
         }
-        workers.iter_mut().zip(shares).zip(&mut targets).map(work).sum()
+        let (worker, share, target) = (workers.first_mut()?, shares.first_mut()?, targets.first_mut()?);
+        let range = next(share);
+        let last = range.end == share.0.end;
+        worker.run(layout, start, range.clone(), last, target).then_some(range.len() as u32)
     }
 
     /// Puts together what patches left for edges and vertices: edges first, then vertices.

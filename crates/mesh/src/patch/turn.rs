@@ -12,42 +12,29 @@
 //!
 //! Cost: about a shuffle a point; one by one three loads and three stores.
 
+use super::Point;
 use super::grid::{Cell, LANES};
 
 /// A value of each of eight patches, or eight of one.
 pub(super) type Eight = [u32; LANES];
 
+/// What a run of ids is filled with.
+pub(super) struct Run<'a> {
+    /// The places that it takes from every patch, and how many of these count: at least eight are there.
+    pub places: &'a [u16],
+    pub per: usize,
+    /// The patches, a lane each, and the first that the part of a buffer has room for.
+    pub patches: &'a [u32],
+    pub first: u32,
+}
+
 /// A way to tell patches apart.
 pub(super) trait Turn: Copy {
-    /// Column i of a square as its row i.
-    fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES];
+    /// Writes the points that a run takes from patches.
+    fn points(self, run: &Run<'_>, cells: &[Cell], out: &mut [Point]);
 
-    /// The points at eight places, patch by patch: coordinates, three rows of eight.
-    #[inline(always)]
-    fn points(self, cells: &[Cell], places: &[u16; LANES]) -> [[Eight; 3]; LANES] {
-        let mut rows = [[0; LANES]; 3 * LANES];
-        for (rows, &place) in rows.as_chunks_mut::<3>().0.iter_mut().zip(places) {
-            *rows = bytemuck::cast(cells[usize::from(place)].0);
-        }
-        let mut out = [[[0; LANES]; 3]; LANES];
-        for (third, rows) in rows.as_chunks::<LANES>().0.iter().enumerate() {
-            let turned = self.square(rows);
-            for (out, turned) in out.iter_mut().zip(turned) {
-                out[third] = turned;
-            }
-        }
-        out
-    }
-
-    /// The ids at eight places, patch by patch.
-    #[inline(always)]
-    fn ids(self, ids: &[Eight], places: &[u16; LANES]) -> [Eight; LANES] {
-        let mut rows = [[0; LANES]; LANES];
-        for (row, &place) in rows.iter_mut().zip(places) {
-            *row = ids[usize::from(place)];
-        }
-        self.square(&rows)
-    }
+    /// Writes the ids that a run takes from patches.
+    fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]);
 }
 
 /// One by one.
@@ -56,14 +43,23 @@ pub(super) struct Plain;
 
 impl Turn for Plain {
     #[inline(always)]
-    fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES] {
-        let mut out = [[0; LANES]; LANES];
-        for (i, out) in out.iter_mut().enumerate() {
-            for (x, row) in out.iter_mut().zip(rows) {
-                *x = row[i];
+    fn points(self, run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {
+        for (lane, &q) in run.patches.iter().enumerate() {
+            let out = &mut out[(q - run.first) as usize * run.per..][..run.per];
+            for (out, &place) in out.iter_mut().zip(run.places) {
+                *out = cells[usize::from(place)].point(lane);
             }
         }
-        out
+    }
+
+    #[inline(always)]
+    fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]) {
+        for (lane, &q) in run.patches.iter().enumerate() {
+            let out = &mut out[(q - run.first) as usize * run.per..][..run.per];
+            for (out, &place) in out.iter_mut().zip(run.places) {
+                *out = ids[usize::from(place)][lane];
+            }
+        }
     }
 }
 
@@ -72,7 +68,7 @@ pub(super) use wide::Wide;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    use super::{Eight, LANES, Turn};
+    use super::{Cell, Eight, LANES, Point, Run, Turn};
     use std::arch::x86_64::*;
 
     /// Says that the processor has vectors of eight (AVX2).
@@ -88,12 +84,52 @@ mod wide {
 
     impl Turn for Wide {
         #[inline(always)]
-        fn square(self, rows: &[Eight; LANES]) -> [Eight; LANES] {
+        fn points(self, run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {
             // SAFETY: a `Wide` is made by `new` alone, which looks whether the processor has what this is compiled for.
-            unsafe { square(rows) }
+            unsafe { points(run, cells, out) }
+        }
+
+        #[inline(always)]
+        fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]) {
+            // SAFETY: as above.
+            unsafe { turned_ids(run, ids, out) }
         }
     }
 
+    #[target_feature(enable = "avx2")]
+    fn points(run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {
+        for (from, places) in eights(run) {
+            let mut rows = [[0; LANES]; 3 * LANES];
+            for (rows, &place) in rows.as_chunks_mut::<3>().0.iter_mut().zip(places) {
+                *rows = bytemuck::cast(cells[usize::from(place)].0);
+            }
+            let mut turned = [[[0; LANES]; 3]; LANES];
+            for (third, rows) in rows.as_chunks::<LANES>().0.iter().enumerate() {
+                for (turned, row) in turned.iter_mut().zip(square(rows)) {
+                    turned[third] = row;
+                }
+            }
+            for (points, &q) in turned.iter().zip(run.patches) {
+                let points: &[Point; LANES] = bytemuck::cast_ref(points);
+                put(points, out, (q - run.first) as usize * run.per + from, run.per);
+            }
+        }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn turned_ids(run: &Run<'_>, ids: &[Eight], out: &mut [u32]) {
+        for (from, places) in eights(run) {
+            let mut rows = [[0; LANES]; LANES];
+            for (row, &place) in rows.iter_mut().zip(places) {
+                *row = ids[usize::from(place)];
+            }
+            for (row, &q) in square(&rows).iter().zip(run.patches) {
+                put(row, out, (q - run.first) as usize * run.per + from, run.per);
+            }
+        }
+    }
+
+    /// Column i of a square as its row i.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn square(rows: &[Eight; LANES]) -> [Eight; LANES] {
@@ -117,5 +153,38 @@ mod wide {
             out[i + 4] = _mm256_permute2x128_si256::<0x31>(fours[i], fours[i + 4]);
         }
         bytemuck::cast(out)
+    }
+
+    /// The places of a run, eight by eight, and where in the run these begin: the last eight may have been in
+    /// the eight before.
+    #[inline(always)]
+    fn eights<'a>(run: &Run<'a>) -> impl Iterator<Item = (usize, &'a [u16; LANES])> {
+        let (places, per) = (run.places, run.per);
+        let last = per.saturating_sub(LANES);
+        (0..per).step_by(LANES).filter_map(move |from| {
+            let from = from.min(last);
+            Some((from, places[from..].first_chunk()?))
+        })
+    }
+
+    /// Copies eight, or as many as a run has if these are fewer.
+    #[inline(always)]
+    fn put<T: Copy>(eight: &[T; LANES], out: &mut [T], at: usize, per: usize) {
+        if per >= LANES {
+            // One length that is known is a few moves, and not a call.
+            out[at..at + LANES].copy_from_slice(eight);
+            return;
+        }
+        let (four, rest) = out[at..at + per].split_at_mut(per & 4);
+        let (two, one) = rest.split_at_mut(per & 2);
+        if let (Some(four), Some(from)) = (four.first_chunk_mut::<4>(), eight.first_chunk()) {
+            *four = *from;
+        }
+        if let (Some(two), Some(from)) = (two.first_chunk_mut::<2>(), eight[per & 4..].first_chunk()) {
+            *two = *from;
+        }
+        if let Some(one) = one.first_mut() {
+            *one = eight[per & 6];
+        }
     }
 }

@@ -10,11 +10,11 @@
 //!
 //! Cost: `grid.rs`.
 
-use super::class::Classes;
+use super::class::{Classes, Tabled};
 use super::grid::{self, Cell, LANES, Spline};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
-use super::turn::{Eight, Plain, Turn};
+use super::turn::{self, Eight, Plain, Turn};
 use super::{Anchor, Kept, Out, Point};
 use crate::plan::Step;
 use crate::scheme::{Reach, Rules, Tags};
@@ -130,8 +130,8 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The level that patches start at, what its rules have to know, and its points.
-pub(super) type Start<'a, C> = (&'a C, &'a Tags<'a>, &'a [Point]);
+/// The level that patches start at, what its rules have to know, its points, and which tables were made.
+pub(super) type Start<'a, C> = (&'a C, &'a Tags<'a>, &'a [Point], &'a Tabled);
 
 impl Worker {
     pub(super) fn new(step: Step, rules: Rules, layout: &Layout) -> Worker {
@@ -171,7 +171,7 @@ impl Worker {
         target: &mut Target<'_>,
     ) -> bool {
         #[cfg(target_arch = "x86_64")]
-        if let Some(wide) = super::turn::Wide::new() {
+        if let Some(wide) = turn::Wide::new() {
             // SAFETY: the processor has what the function is compiled for.
             return unsafe { self.run_wide(layout, start, patches, finish, (target, wide)) };
         }
@@ -187,7 +187,7 @@ impl Worker {
         start: Start<'_, C>,
         patches: Range<u32>,
         finish: bool,
-        out: (&mut Target<'_>, super::turn::Wide),
+        out: (&mut Target<'_>, turn::Wide),
     ) -> bool {
         self.run_here(layout, start, patches, finish, out)
     }
@@ -196,12 +196,11 @@ impl Worker {
     fn run_here<C: Connectivity>(
         &mut self,
         layout: &Layout,
-        (c, tags, old): Start<'_, C>,
+        (c, tags, old, tabled): Start<'_, C>,
         patches: Range<u32>,
         finish: bool,
         (target, turn): (&mut Target<'_>, impl Turn),
     ) -> bool {
-        let most = 24 + c.faces() as usize / 16;
         let Worker { classes, ring, waiting, room, rims } = self;
         let mut ready = None;
         let mut next = patches.start;
@@ -211,7 +210,7 @@ impl Worker {
                 if !ring.read(c, layout.sides, next, tags) {
                     return false;
                 }
-                let Some(class) = room.class_of(classes, ring, waiting, most) else { return false };
+                let Some(class) = room.class_of(classes, ring, waiting, tabled) else { return false };
                 waiting[class].add(next, ring, room.active(classes, class));
                 ready = (waiting[class].patches.len() == LANES).then_some(class);
                 next += 1;
@@ -275,15 +274,21 @@ impl Room {
         class == 0 && self.spline.is_some()
     }
 
-    /// Where patches with this ring wait; none if there are more than `most` tables already.
+    /// Where patches with this ring wait; none if there are too many tables already.
     #[inline(always)]
-    fn class_of(&self, classes: &mut Classes, ring: &Ring, waiting: &mut Vec<Waiting>, most: usize) -> Option<usize> {
+    fn class_of(
+        &self,
+        classes: &mut Classes,
+        ring: &Ring,
+        waiting: &mut Vec<Waiting>,
+        tabled: &Tabled,
+    ) -> Option<usize> {
         if ring.key.is_empty() && self.spline.is_some() {
             return Some(0);
         }
         let number = classes.number(&ring.key)?;
         if classes.get(number).is_none() {
-            if classes.tabled() >= most {
+            if !tabled.admits(&ring.key) {
                 return None;
             }
             classes.prepare(number);
@@ -335,13 +340,7 @@ impl Room {
 
     /// The points of a lone patch, in a lane.
     #[inline(always)]
-    fn evaluate_one(
-        &mut self,
-        layout: &Layout,
-        classes: &Classes,
-        class: usize,
-        (lane, shaded): (usize, bool),
-    ) {
+    fn evaluate_one(&mut self, layout: &Layout, classes: &Classes, class: usize, (lane, shaded): (usize, bool)) {
         if let Some(table) = classes.get(class as u32 - 1) {
             table.evaluate_one(&self.lone, lane, &mut self.points[..Room::count(layout, shaded)]);
         }
@@ -421,12 +420,8 @@ impl Room {
     #[inline(always)]
     fn list(&self, layout: &Layout, patches: &[u32], target: &mut Target<'_>, turn: impl Turn) {
         for (run, part) in layout.face_runs.iter().zip(&mut target.corners) {
-            let per = run.per as usize * layout.sides;
-            for (from, places) in eights(&layout.faces, run.first, per) {
-                for (ids, &q) in turn.ids(&self.ids, places).iter().zip(patches) {
-                    put(ids, part, (q - target.first) as usize * per + from, per);
-                }
-            }
+            let (places, per) = (&layout.faces[run.first..], run.per as usize * layout.sides);
+            turn.ids(&turn::Run { places, per, patches, first: target.first }, &self.ids, part);
         }
     }
 }
@@ -435,44 +430,7 @@ impl Room {
 #[inline(always)]
 fn deal(layout: &Layout, cells: &[Cell], patches: &[u32], first: u32, out: &mut [&mut [Point]], turn: impl Turn) {
     for (run, part) in layout.runs.iter().zip(out) {
-        let per = run.per as usize;
-        for (from, places) in eights(&layout.places, run.first, per) {
-            for (points, &q) in turn.points(cells, places).iter().zip(patches) {
-                let points: &[Point; LANES] = bytemuck::cast_ref(points);
-                put(points, part, (q - first) as usize * per + from, per);
-            }
-        }
-    }
-}
-
-/// The places of a run from its first on, eight by eight, and where in the run these begin: the last eight may have been in
-/// the eight before.
-#[inline(always)]
-fn eights(places: &[u16], first: usize, per: usize) -> impl Iterator<Item = (usize, &[u16; LANES])> {
-    let last = per.saturating_sub(LANES);
-    (0..per).step_by(LANES).filter_map(move |from| {
-        let from = from.min(last);
-        Some((from, places[first + from..].first_chunk()?))
-    })
-}
-
-/// Copies eight, or as many as a run has if these are fewer.
-#[inline(always)]
-fn put<T: Copy>(eight: &[T; LANES], out: &mut [T], at: usize, per: usize) {
-    if per >= LANES {
-        // One length that is known is a few moves, and not a call.
-        out[at..at + LANES].copy_from_slice(eight);
-        return;
-    }
-    let (four, rest) = out[at..at + per].split_at_mut(per & 4);
-    let (two, one) = rest.split_at_mut(per & 2);
-    if let (Some(four), Some(from)) = (four.first_chunk_mut::<4>(), eight.first_chunk()) {
-        *four = *from;
-    }
-    if let (Some(two), Some(from)) = (two.first_chunk_mut::<2>(), eight[per & 4..].first_chunk()) {
-        *two = *from;
-    }
-    if let Some(one) = one.first_mut() {
-        *one = eight[per & 6];
+        let (places, per) = (&layout.places[run.first..], run.per as usize);
+        turn.points(&turn::Run { places, per, patches, first }, cells, part);
     }
 }

@@ -14,7 +14,9 @@
 //!
 //! Cost: about 20 ns an output face. Limit of smoothness: C2 but at extraordinary vertices, C1 there.
 
-use super::{Accepts, Creasing, Family, Info, Reach, Scheme, Tags, TriangleRule, edge_point, face_centroids, vertex_point};
+use super::{
+    Accepts, Creasing, Family, Info, Reach, Scheme, Tags, TriangleRule, edge_point, face_centroids, vertex_point,
+};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::Split;

@@ -16,7 +16,9 @@
 //! neighbours along it fit, and so do the sheets at a cut edge. Colours and texture coordinates are not displaced. Not affine
 //! invariant, and other numbers of vertices give another surface. Cost: the scheme's, and one hash a new point.
 
-use super::{Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Reach, Scheme, Tags, entry};
+use super::{
+    Accepts, CatmullClark, Domain, Entry, Family, Honours, Info, Linear, Loop, Param, Reach, Scheme, Tags, entry,
+};
 use crate::limit::LimitRule;
 use crate::sink::{Row, Sink};
 use crate::split::{Level, Split};

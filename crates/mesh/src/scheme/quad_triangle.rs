@@ -23,7 +23,8 @@
 
 use super::loop_::beta;
 use super::{
-    Accepts, CatmullClark, Creasing, Entry, Family, Honours, Info, Loop, Reach, Scheme, Tags, edge_point, entry, vertex_point,
+    Accepts, CatmullClark, Creasing, Entry, Family, Honours, Info, Loop, Reach, Scheme, Tags, edge_point, entry,
+    vertex_point,
 };
 use crate::sink::{Row, Sink};
 use crate::split::Split;

@@ -65,10 +65,7 @@ impl Track {
             Some(patches) => {
                 let [counts, _] = patches.counts();
                 fit(&mut self.new_points, counts.vertices as usize);
-                fit(
-                    &mut self.patched.normals,
-                    if self.patched.shaded { counts.vertices as usize } else { 0 },
-                );
+                fit(&mut self.patched.normals, if self.patched.shaded { counts.vertices as usize } else { 0 });
                 fit(&mut self.corners, counts.corners as usize);
                 let (points, normals) = (&mut self.new_points[..], &mut self.patched.normals[..]);
                 let corners = if self.patched.listed { &mut [] } else { &mut self.corners[..] };
