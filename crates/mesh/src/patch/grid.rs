@@ -12,9 +12,6 @@
 //!
 //! Cost: linear; 16 products a point and more for tables, about the points' time again for normals.
 
-// Loops over lanes name the lane: that is what makes vector instructions of them.
-#![allow(clippy::needless_range_loop)]
-
 use super::class::Table;
 
 /// Patches that are worked on at once: eight on the web and natively, four by four or eight at once as the machine can.
@@ -43,6 +40,58 @@ impl Cell {
         let [x, y, z] = &mut self.0;
         [x[lane], y[lane], z[lane]] = point;
     }
+}
+
+/// A value for each lane, written out: what begins as zeros and is filled lane by lane is a block of memory to compilers, and on
+/// the web every copy of a block is a call.
+macro_rules! lanes {
+    ($l:ident => $value:expr) => {
+        [
+            {
+                const $l: usize = 0;
+                $value
+            },
+            {
+                const $l: usize = 1;
+                $value
+            },
+            {
+                const $l: usize = 2;
+                $value
+            },
+            {
+                const $l: usize = 3;
+                $value
+            },
+            {
+                const $l: usize = 4;
+                $value
+            },
+            {
+                const $l: usize = 5;
+                $value
+            },
+            {
+                const $l: usize = 6;
+                $value
+            },
+            {
+                const $l: usize = 7;
+                $value
+            },
+        ]
+    };
+}
+
+/// A value for each coordinate and lane.
+macro_rules! cell {
+    ($k:ident, $l:ident => $value:expr) => {
+        Cell([
+            { const $k: usize = 0; lanes!($l => $value) },
+            { const $k: usize = 1; lanes!($l => $value) },
+            { const $k: usize = 2; lanes!($l => $value) },
+        ])
+    };
 }
 
 /// Room for the grids of eight patches of `m` steps: points, and behind them a strip of m + 1 for each side, the row of
@@ -147,16 +196,8 @@ fn line(a: [f32; 4], [r0, r1, r2, r3]: [&[Cell]; 4], out: &mut [Cell]) {
 /// Four points times their weights.
 #[inline(always)]
 fn blend(a: [f32; 4], [p0, p1, p2, p3]: [&Cell; 4]) -> Cell {
-    let mut out = Cell::ZERO;
-    for (k, out) in out.0.iter_mut().enumerate() {
-        let (p0, p1, p2, p3) = (p0.0[k], p1.0[k], p2.0[k], p3.0[k]);
-        let mut sum = [0.0; LANES];
-        for l in 0..LANES {
-            sum[l] = a[0] * p0[l] + a[1] * p1[l] + a[2] * p2[l] + a[3] * p3[l];
-        }
-        *out = sum;
-    }
-    out
+    let (p0, p1, p2, p3) = (&p0.0, &p1.0, &p2.0, &p3.0);
+    cell!(K, L => a[0] * p0[K][L] + a[1] * p1[K][L] + a[2] * p2[K][L] + a[3] * p3[K][L])
 }
 
 impl Table {
@@ -167,17 +208,21 @@ impl Table {
         for (block, out) in blocks.zip(out.chunks_mut(LANES)) {
             // Two points at once: each control point is read half as often.
             for (i, out) in out.chunks_mut(2).enumerate() {
-                let mut sums = [Cell::ZERO; 2];
-                for (weights, p) in block.as_chunks::<LANES>().0.iter().zip(controls) {
+                let weights = block.as_chunks::<LANES>().0;
+                let ([weights, more @ ..], [p, others @ ..]) = (weights, controls) else { return };
+                let [a, b] = weights.as_chunks::<2>().0[i];
+                let (mut first, mut second) = (cell!(K, L => a * p.0[K][L]), cell!(K, L => b * p.0[K][L]));
+                for (weights, p) in more.iter().zip(others) {
                     let [a, b] = weights.as_chunks::<2>().0[i];
-                    for k in 0..3 {
-                        for l in 0..LANES {
-                            sums[0].0[k][l] += a * p.0[k][l];
-                            sums[1].0[k][l] += b * p.0[k][l];
-                        }
+                    first = cell!(K, L => first.0[K][L] + a * p.0[K][L]);
+                    second = cell!(K, L => second.0[K][L] + b * p.0[K][L]);
+                }
+                if let [out, rest @ ..] = out {
+                    *out = first;
+                    if let [out, ..] = rest {
+                        *out = second;
                     }
                 }
-                out.iter_mut().zip(sums).for_each(|(out, sum)| *out = sum);
             }
         }
     }
@@ -187,43 +232,61 @@ impl Table {
     pub(super) fn evaluate_one(&self, controls: &[[f32; 3]], lane: usize, out: &mut [Cell]) {
         let blocks = self.weights.chunks_exact(controls.len() * LANES);
         for (block, out) in blocks.zip(out.chunks_mut(LANES)) {
-            let mut sums = [[0.0f32; LANES]; 3];
-            for (weights, p) in block.as_chunks::<LANES>().0.iter().zip(controls) {
-                for l in 0..LANES {
-                    sums[0][l] += weights[l] * p[0];
-                    sums[1][l] += weights[l] * p[1];
-                    sums[2][l] += weights[l] * p[2];
-                }
+            let weights = block.as_chunks::<LANES>().0;
+            let ([weights, more @ ..], [p, others @ ..]) = (weights, controls) else { return };
+            let [mut x, mut y, mut z] = cell!(K, L => weights[L] * p[K]).0;
+            for (weights, p) in more.iter().zip(others) {
+                x = lanes!(L => x[L] + weights[L] * p[0]);
+                y = lanes!(L => y[L] + weights[L] * p[1]);
+                z = lanes!(L => z[L] + weights[L] * p[2]);
             }
             for (l, out) in out.iter_mut().enumerate() {
-                out.set(lane, [sums[0][l], sums[1][l], sums[2][l]]);
+                out.set(lane, [x[l], y[l], z[l]]);
             }
         }
     }
 }
 
+/// Room for rows of normals. Values stay where they are written: see [`lanes`].
+#[derive(Debug)]
+pub(super) struct Rows {
+    /// Of faces, with a zero before the first: of quads; of triangles those that stand on the row, and those between them. Along
+    /// a side what its steps give to the point before them, and behind.
+    faces: [Vec<Cell>; 2],
+    /// What the row before leaves for this one.
+    left: Vec<Cell>,
+}
+
+impl Rows {
+    pub(super) fn new(m: usize) -> Rows {
+        let row = || vec![Cell::ZERO; m + 3];
+        Rows { faces: [row(), row()], left: row() }
+    }
+}
+
 /// The normals of patches at every point of their grids, but at their corners: there the sum of what their own faces give, whose
-/// areas are their lengths (twice). `left` is room for a row; `border` is as in [`super::layout::Layout`], and `points` is how many
-/// there are before the strips.
+/// areas are their lengths (twice). `border` is as in [`super::layout::Layout`], and `points` is how many there are before the
+/// strips.
 #[inline(always)]
 pub(super) fn shade(
     (sides, m, points): (usize, usize, usize),
     border: &[u16],
     from: &[Cell],
-    left: &mut Vec<Cell>,
+    rows: &mut Rows,
     out: &mut [Cell],
 ) {
-    left.clear();
-    left.resize(m + 1, Cell::ZERO);
+    let Rows { faces: [up, down], left } = rows;
+    left.fill(Cell::ZERO);
+    (up[0], down[0]) = (Cell::ZERO, Cell::ZERO);
     let mut start = 0;
     for j in 0..m {
         let length = if sides == 4 { m + 1 } else { m + 1 - j };
         let (row, above) = from[start..].split_at(length);
         let sums = &mut out[start..start + length];
         if sides == 4 {
-            add_quads(row, &above[..length], left, sums);
+            add_quads(row, &above[..length], up, left, sums);
         } else {
-            add_triangles(row, &above[..length - 1], left, sums);
+            add_triangles(row, &above[..length - 1], (up, down), left, sums);
         }
         if j > 0 {
             // Nothing comes from across.
@@ -239,124 +302,111 @@ pub(super) fn shade(
         let own = &border[side * m..(side + 1) * m];
         let end = border[(side + 1) % sides * m];
         let strip = &from[points + side * (m + 1)..][..m + 1];
-        let (mut a, mut before) = (&from[usize::from(own[0])], Cell::ZERO);
         for p in 0..m {
+            let a = &from[usize::from(own[p])];
             let b = &from[usize::from(*own.get(p + 1).unwrap_or(&end))];
             let (c, d) = (&strip[p], &strip[p + 1]);
-            // Of triangles the face on step p, and the one that stands on its second end.
-            let face = if sides == 4 { cross(&minus(c, b), &minus(d, a)) } else { cross(&minus(a, b), &minus(c, b)) };
-            if p > 0 {
-                let sum = &mut out[usize::from(own[p])];
-                *sum = unit(&plus(sum, &plus(&face, &before)));
+            if sides == 4 {
+                up[p] = cross(&minus(c, b), &minus(d, a));
+            } else {
+                // The face on step p, and with it the one that stands on its second end.
+                up[p] = cross(&minus(a, b), &minus(c, b));
+                down[p] = plus(&up[p], &cross(&minus(c, b), &minus(d, b)));
             }
-            before = if sides == 4 { face } else { plus(&face, &cross(&minus(c, b), &minus(d, b))) };
-            a = b;
+        }
+        let behind = if sides == 4 { &*up } else { &*down };
+        for p in 1..m {
+            let sum = &mut out[usize::from(own[p])];
+            *sum = unit(&plus(sum, &plus(&up[p], &behind[p - 1])));
         }
     }
 }
 
 /// Adds up the normals of the quads between a row of points and the next: at the row's, and what they leave for the next.
 #[inline(always)]
-fn add_quads(row: &[Cell], above: &[Cell], left: &mut [Cell], sums: &mut [Cell]) {
+fn add_quads(row: &[Cell], above: &[Cell], faces: &mut [Cell], left: &mut [Cell], sums: &mut [Cell]) {
     let m = row.len() - 1;
-    let (above, left, sums) = (&above[..m + 1], &mut left[..m + 1], &mut sums[..m + 1]);
-    let mut before = Cell::ZERO;
+    let (above, left, sums, faces) = (&above[..m + 1], &mut left[..m + 1], &mut sums[..m + 1], &mut faces[..m + 2]);
     for i in 0..m {
-        let behind = cross(&minus(&above[i + 1], &row[i]), &minus(&above[i], &row[i + 1]));
-        let leave = plus(&before, &behind);
-        sums[i] = plus(&left[i], &leave);
-        left[i] = leave;
-        before = behind;
+        faces[i + 1] = cross(&minus(&above[i + 1], &row[i]), &minus(&above[i], &row[i + 1]));
     }
-    sums[m] = plus(&left[m], &before);
-    left[m] = before;
+    faces[m + 1] = Cell::ZERO;
+    for i in 0..m + 1 {
+        sums[i] = plus(&left[i], &plus(&faces[i], &faces[i + 1]));
+        left[i] = plus(&faces[i], &faces[i + 1]);
+    }
 }
 
 /// The same of triangles, whose next row is one shorter: those that stand on the row, and those between them.
 #[inline(always)]
-fn add_triangles(row: &[Cell], above: &[Cell], left: &mut [Cell], sums: &mut [Cell]) {
+fn add_triangles(
+    row: &[Cell],
+    above: &[Cell],
+    (up, down): (&mut [Cell], &mut [Cell]),
+    left: &mut [Cell],
+    sums: &mut [Cell],
+) {
     let m = row.len() - 1;
     let (above, left, sums) = (&above[..m], &mut left[..m + 1], &mut sums[..m + 1]);
-    let (mut before, mut dip) = (Cell::ZERO, Cell::ZERO);
+    let (up, down) = (&mut up[..m + 2], &mut down[..m + 2]);
     for i in 0..m {
-        let (a, b, d) = (&row[i], &row[i + 1], &above[i]);
-        let behind = cross(&minus(b, a), &minus(d, a));
-        let next_dip = match above.get(i + 1) {
-            Some(c) => cross(&minus(c, b), &minus(d, b)),
-            None => Cell::ZERO,
-        };
-        sums[i] = plus(&left[i], &plus(&plus(&before, &behind), &dip));
-        left[i] = plus(&behind, &plus(&dip, &next_dip));
-        (before, dip) = (behind, next_dip);
+        up[i + 1] = cross(&minus(&row[i + 1], &row[i]), &minus(&above[i], &row[i]));
     }
-    sums[m] = plus(&left[m], &plus(&before, &dip));
+    for i in 0..m - 1 {
+        down[i + 1] = cross(&minus(&above[i + 1], &row[i + 1]), &minus(&above[i], &row[i + 1]));
+    }
+    (up[m + 1], down[m], down[m + 1]) = (Cell::ZERO, Cell::ZERO, Cell::ZERO);
+    for i in 0..m + 1 {
+        sums[i] = plus(&left[i], &plus(&plus(&up[i], &up[i + 1]), &down[i]));
+        left[i] = plus(&up[i + 1], &plus(&down[i], &down[i + 1]));
+    }
 }
 
 #[inline(always)]
 fn plus(a: &Cell, b: &Cell) -> Cell {
-    let mut out = *a;
-    for k in 0..3 {
-        for l in 0..LANES {
-            out.0[k][l] += b.0[k][l];
-        }
-    }
-    out
+    cell!(K, L => a.0[K][L] + b.0[K][L])
 }
 
 #[inline(always)]
 fn minus(a: &Cell, b: &Cell) -> Cell {
-    let mut out = *a;
-    for k in 0..3 {
-        for l in 0..LANES {
-            out.0[k][l] -= b.0[k][l];
-        }
-    }
-    out
+    cell!(K, L => a.0[K][L] - b.0[K][L])
 }
 
 #[inline(always)]
 fn cross(a: &Cell, b: &Cell) -> Cell {
-    let mut out = Cell::ZERO;
-    for k in 0..3 {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        for l in 0..LANES {
-            out.0[k][l] = a.0[i][l] * b.0[j][l] - a.0[j][l] * b.0[i][l];
-        }
-    }
-    out
+    cell!(K, L => {
+        let (i, j) = ((K + 1) % 3, (K + 2) % 3);
+        a.0[i][L] * b.0[j][L] - a.0[j][L] * b.0[i][L]
+    })
 }
 
 /// Unit vectors.
 #[inline(always)]
 fn unit(v: &Cell) -> Cell {
     let [x, y, z] = &v.0;
-    let (mut squares, mut plain) = ([0.0f32; LANES], true);
-    for l in 0..LANES {
-        squares[l] = x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
-    }
+    let squares = lanes!(L => x[L] * x[L] + y[L] * y[L] + z[L] * z[L]);
+    let mut plain = true;
     for s in squares {
         plain &= s > 1e-30 && s < 1e30;
     }
-    let mut inverse = [0.0; LANES];
-    for l in 0..LANES {
-        inverse[l] = 1.0 / squares[l].sqrt();
-    }
-    let mut out = *v;
-    for plane in &mut out.0 {
-        for l in 0..LANES {
-            plane[l] *= inverse[l];
-        }
-    }
     if !plain {
-        mend(v, &squares, &mut out);
+        return odd_unit(v);
     }
-    out
+    let inverse = lanes!(L => 1.0 / squares[L].sqrt());
+    cell!(K, L => v.0[K][L] * inverse[L])
 }
 
-/// Unit vectors where squares leave what numbers can hold, and only there: lanes do not meet.
+/// Unit vectors where some squares leave what numbers can hold: another way there, and only there, for lanes do not meet.
 #[cold]
-fn mend(v: &Cell, squares: &[f32; LANES], out: &mut Cell) {
-    for l in (0..LANES).filter(|&l| !(squares[l] > 1e-30 && squares[l] < 1e30)) {
-        out.set(l, crate::refined::unit(v.point(l)));
+fn odd_unit(v: &Cell) -> Cell {
+    let mut out = *v;
+    for l in 0..LANES {
+        let [x, y, z] = v.point(l);
+        let square = x * x + y * y + z * z;
+        let plain = square > 1e-30 && square < 1e30;
+        let inverse = 1.0 / square.sqrt();
+        let unit = if plain { [x * inverse, y * inverse, z * inverse] } else { crate::refined::unit([x, y, z]) };
+        out.set(l, unit);
     }
+    out
 }

@@ -11,7 +11,7 @@
 //! Cost: `grid.rs`.
 
 use super::class::{Classes, Tabled};
-use super::grid::{self, Cell, LANES, Spline};
+use super::grid::{self, Cell, LANES, Rows, Spline};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
 use super::turn::{self, Eight, Plain, Turn};
@@ -53,7 +53,8 @@ struct Room {
     lone: Vec<Point>,
     points: Vec<Cell>,
     normals: Vec<Cell>,
-    rows: Vec<Cell>,
+    lines: Vec<Cell>,
+    rows: Rows,
     /// The ids of points, place by place, and of one side.
     ids: Vec<Eight>,
     side: Vec<u32>,
@@ -145,7 +146,8 @@ impl Worker {
                 lone: Vec::new(),
                 points: grid::room(layout.m),
                 normals: grid::room(layout.m),
-                rows: Vec::new(),
+                lines: Vec::new(),
+                rows: Rows::new(layout.m),
                 ids: vec![[0; LANES]; layout.points],
                 side: vec![0; layout.m],
             },
@@ -202,10 +204,14 @@ impl Worker {
         (target, turn): (&mut Target<'_>, impl Turn),
     ) -> bool {
         let Worker { classes, ring, waiting, room, rims } = self;
-        let mut ready = None;
+        let shaded = !target.normals.is_empty();
         let mut next = patches.start;
+        // Which classes have been emptied of groups, and of lone patches.
+        let (mut emptied, mut cleared) = (0, 0);
+        let mut group = Vec::with_capacity(LANES);
+        // Reading goes on until a group is full or all is read: the arithmetic stands here once.
         loop {
-            // Reading goes on until a group is full or all is read: the arithmetic stands here once.
+            let mut ready = None;
             while ready.is_none() && next < patches.end {
                 if !ring.read(c, layout.sides, next, tags) {
                     return false;
@@ -215,36 +221,33 @@ impl Worker {
                 ready = (waiting[class].patches.len() == LANES).then_some(class);
                 next += 1;
             }
-            if ready.is_none() && finish {
-                let enough = |class: usize| if room.is_spline(class) { 1 } else { FEW };
-                ready = (0..waiting.len()).find(|&class| waiting[class].patches.len() >= enough(class));
+            while ready.is_none() && finish && emptied < waiting.len() {
+                let enough = if room.is_spline(emptied) { 1 } else { FEW };
+                ready = (waiting[emptied].patches.len() >= enough).then_some(emptied);
+                emptied += 1;
             }
-            let Some(class) = ready.take() else { break };
-            room.evaluate(layout, classes, class, &waiting[class], old, !target.normals.is_empty());
-            room.hand_out(layout, c, &waiting[class].patches, rims, (target, turn));
-            waiting[class].patches.clear();
+            group.clear();
+            if let Some(class) = ready {
+                room.evaluate(layout, classes, class, &waiting[class], old, shaded);
+                group.append(&mut waiting[class].patches);
+            }
+            while ready.is_none() && finish && group.len() < LANES && cleared < waiting.len() {
+                let Waiting { patches, controls } = &mut waiting[cleared];
+                let Some(q) = patches.pop() else {
+                    cleared += 1;
+                    continue;
+                };
+                let from = patches.len();
+                room.lone.clear();
+                room.lone.extend(controls.iter().map(|control| old[control[from] as usize]));
+                room.evaluate_one(layout, classes, cleared, (group.len(), shaded));
+                group.push(q);
+            }
+            if group.is_empty() {
+                return true;
+            }
+            room.hand_out(layout, c, &group, rims, (target, turn));
         }
-        if finish {
-            let mut group: Vec<u32> = Vec::new();
-            for class in 0..waiting.len() {
-                let Waiting { patches, controls } = &waiting[class];
-                for (from, &q) in patches.iter().enumerate() {
-                    room.lone.clear();
-                    room.lone.extend(controls.iter().map(|control| old[control[from] as usize]));
-                    room.evaluate_one(layout, classes, class, (group.len(), !target.normals.is_empty()));
-                    group.push(q);
-                    if group.len() == LANES {
-                        room.hand_out(layout, c, &group, rims, (target, turn));
-                        group.clear();
-                    }
-                }
-                waiting[class].patches.clear();
-            }
-            if !group.is_empty() {
-                room.hand_out(layout, c, &group, rims, (target, turn));
-            }
-        }
-        true
     }
 }
 
@@ -332,7 +335,7 @@ impl Room {
             self.controls.push(Cell([along(0), along(1), along(2)]));
         }
         if let (0, Some(spline)) = (class, &self.spline) {
-            spline.evaluate(layout.m, &self.controls, shaded, &mut self.rows, &mut self.points);
+            spline.evaluate(layout.m, &self.controls, shaded, &mut self.lines, &mut self.points);
         } else if let Some(table) = classes.get(class as u32 - 1) {
             table.evaluate(&self.controls, &mut self.points[..Room::count(layout, shaded)]);
         }
