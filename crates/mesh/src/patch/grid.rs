@@ -146,8 +146,8 @@ impl Spline {
         rows.clear();
         for [a, b, c, d] in &ROWS {
             let p = [&controls[*a], &controls[*b], &controls[*c], &controls[*d]];
-            for i in 0..w {
-                rows.push(blend([columns[0][i], columns[1][i], columns[2][i], columns[3][i]], p));
+            for (((a, b), c), d) in columns[0].iter().zip(columns[1]).zip(columns[2]).zip(columns[3]) {
+                rows.push(blend([*a, *b, *c, *d], p));
             }
         }
         let (below, above) = rows.split_at(2 * w);
