@@ -288,8 +288,11 @@ impl Patches {
                 let range = next(share);
                 // Who goes on with the share is not known: nothing may wait.
                 let fit = worker.run(layout, start, range.clone(), true, target);
-                idle_now().push(worker);
-                fit.then_some(range.len() as u32)
+                // One that stopped has patches of this share waiting.
+                fit.then(|| {
+                    idle_now().push(worker);
+                    range.len() as u32
+                })
             };
             let sum = shares.par_iter_mut().zip(&mut targets).with_max_len(1).map(work).sum();
             *workers = idle.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
