@@ -123,7 +123,9 @@ fn main() {
     if cfg!(all(target_os = "linux", target_env = "gnu")) && std::env::var_os("MALLOC_MMAP_THRESHOLD_").is_none() {
         let me = std::env::current_exe().unwrap_or_else(|e| panic!("{e}"));
         let keep = [("MALLOC_MMAP_THRESHOLD_", "4000000000"), ("MALLOC_TRIM_THRESHOLD_", "4000000000")];
-        let status = Command::new(me).args(&args).envs(keep).status();
+        // Threads keep theirs as well, in the same place; and the table is one thread's.
+        let same = [("MALLOC_ARENA_MAX", "1"), ("RAYON_NUM_THREADS", "1")];
+        let status = Command::new(me).args(&args).envs(keep).envs(same).status();
         assert!(status.is_ok_and(|s| s.success()));
         return;
     }
