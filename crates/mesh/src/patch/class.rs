@@ -25,8 +25,8 @@ use crate::scheme::{Boundary, Rules, Tags};
 use crate::sink::{Cursor, Source};
 use crate::split::{Level, Split};
 use crate::topology::{Connectivity, Topology};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, PoisonError};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Weights of one point: (control point, weight).
 type SparseRow = Vec<(u32, f64)>;
@@ -41,6 +41,8 @@ struct Child {
 
 #[derive(Debug)]
 struct Class {
+    /// Whether its children were looked for.
+    refined: bool,
     corners: Vec<Corner>,
     controls: u32,
     children: Vec<Child>,
@@ -69,8 +71,8 @@ pub(super) struct Classes {
     classes: Vec<Class>,
     /// Grids of depth 0 ..= depth.
     grids: Vec<Grid>,
-    /// Tables of the last depth, by class.
-    tables: Vec<Option<Table>>,
+    /// Tables of the last depth, by class; threads share them.
+    tables: Vec<Option<Arc<Table>>>,
 }
 
 /// Where the grids and strips of the four children lie in a grid with strips ([`super::grid::room`]); [`INSIDE`] for
@@ -87,19 +89,26 @@ struct Grid {
 /// No place.
 const INSIDE: u16 = u16::MAX;
 
-/// The classes that all threads together have made tables of: beyond a number they do not pay. Whether they do must not depend
-/// on who met which.
+/// The tables that all threads together have made, none for those that are being made: beyond a number they do not pay. Whether they do
+/// must not depend on who met which.
 #[derive(Debug, Default)]
 pub(super) struct Tabled {
     pub most: usize,
-    met: Mutex<BTreeSet<Vec<u32>>>,
+    met: Mutex<BTreeMap<Vec<u32>, Option<Arc<Table>>>>,
 }
 
 impl Tabled {
-    /// Counts the class with this key; false if it is one too many.
-    pub(super) fn admits(&self, key: &[u32]) -> bool {
+    /// The table of the class with this key; inside none if it has to be made, none if it is one too many.
+    fn ask(&self, key: &[u32]) -> Option<Option<Arc<Table>>> {
         let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
-        met.contains(key) || (met.len() < self.most && met.insert(key.to_vec()))
+        if let Some(table) = met.get(key) {
+            return Some(table.clone());
+        }
+        (met.len() < self.most).then(|| met.insert(key.to_vec(), None).flatten())
+    }
+
+    fn give(&self, key: &[u32], table: &Arc<Table>) {
+        self.met.lock().unwrap_or_else(PoisonError::into_inner).insert(key.to_vec(), Some(table.clone()));
     }
 }
 
@@ -111,25 +120,34 @@ impl Classes {
         Classes { step, rules, depth: layout.depth, numbers, classes, grids, tables: Vec::new() }
     }
 
-    /// The number of the class with this key, known or not. None if its ring cannot be unfolded.
-    pub(super) fn number(&mut self, key: &[u32]) -> Option<u32> {
+    /// The number of the class with this key, known or not.
+    pub(super) fn number(&mut self, key: &[u32]) -> u32 {
         if let Some(&number) = self.numbers.get(key) {
-            return Some(number);
+            return number;
         }
         let number = self.classes.len() as u32;
         self.numbers.insert(key.to_vec(), number);
         let corners = ring::corners(key, self.sides());
-        self.classes.push(Class { corners, controls: 0, children: Vec::new(), across: Vec::new(), exact: Vec::new() });
+        let (children, across, exact) = Default::default();
+        self.classes.push(Class { refined: false, corners, controls: 0, children, across, exact });
         self.tables.push(None);
-        self.refine(number).then_some(number)
+        number
     }
 
     fn sides(&self) -> usize {
         if self.step.split == Split::Quad { 4 } else { 3 }
     }
 
-    /// Finds the children of a class; false if the ring is none of a manifold's.
+    /// Finds the children of a class, and theirs; false if the ring is none of a manifold's.
     fn refine(&mut self, number: u32) -> bool {
+        let found = self.classes[number as usize].refined || self.find_children(number);
+        self.classes[number as usize].refined = found;
+        found
+    }
+
+    fn find_children(&mut self, number: u32) -> bool {
+        // It may be a child of its own.
+        self.classes[number as usize].refined = true;
         let sides = self.sides();
         let corners = self.classes[number as usize].corners.clone();
         let (faces, controls) = ring::faces(&corners);
@@ -174,7 +192,10 @@ impl Classes {
             if !ring.read(&below, sides, face, &tags) {
                 return false;
             }
-            let Some(class) = self.number(&ring.key) else { return false };
+            let class = self.number(&ring.key);
+            if !self.refine(class) {
+                return false;
+            }
             let rows = ring.controls.iter().map(|&v| rows[v as usize].clone()).collect();
             children.push(Child { class, rows });
         }
@@ -183,18 +204,27 @@ impl Classes {
         true
     }
 
-    /// Makes the table of `number`, of the full depth.
-    pub(super) fn prepare(&mut self, number: u32) {
-        if self.tables[number as usize].is_none() {
-            self.deepen(number, self.depth as usize);
-            self.tables[number as usize] = Some(self.table(number));
+    /// Takes the table of `number`, whose key it is, or makes it, of the full depth; false if it is one too many, or its ring cannot be
+    /// unfolded.
+    pub(super) fn prepare(&mut self, number: u32, key: &[u32], tabled: &Tabled) -> bool {
+        let Some(there) = tabled.ask(key) else { return false };
+        if there.is_none() && !self.refine(number) {
+            return false;
         }
+        let table = there.unwrap_or_else(|| {
+            self.deepen(number, self.depth as usize);
+            let table = Arc::new(self.table(number));
+            tabled.give(key, &table);
+            table
+        });
+        self.tables[number as usize] = Some(table);
+        true
     }
 
     /// The table of `number`; none if it was not prepared.
     #[inline(always)]
     pub(super) fn get(&self, number: u32) -> Option<&Table> {
-        self.tables[number as usize].as_ref()
+        self.tables[number as usize].as_deref()
     }
 
     /// Makes exact tables up to a depth.

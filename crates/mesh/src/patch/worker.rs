@@ -289,12 +289,9 @@ impl Room {
         if ring.key.is_empty() && self.spline.is_some() {
             return Some(0);
         }
-        let number = classes.number(&ring.key)?;
-        if classes.get(number).is_none() {
-            if !tabled.admits(&ring.key) {
-                return None;
-            }
-            classes.prepare(number);
+        let number = classes.number(&ring.key);
+        if classes.get(number).is_none() && !classes.prepare(number, &ring.key, tabled) {
+            return None;
         }
         let class = number as usize + 1;
         if waiting.len() <= class {
