@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use limn_mesh::{Mesh, Plan, Refined};
+use limn_mesh::{Large, Mesh, Plan, Refined};
 use limn_render::Gpu;
 use wasm_bindgen::prelude::*;
 
@@ -92,6 +92,16 @@ impl Remote {
     }
 }
 
+impl Large for Run {
+    fn length(&self, i: usize) -> usize {
+        self.large(i).length() as usize
+    }
+
+    fn copy_to(&self, i: usize, out: &mut [u8]) {
+        self.large(i).copy_to(out);
+    }
+}
+
 /// A run over there; there until it is dropped.
 struct Away {
     run: Option<Run>,
@@ -110,7 +120,7 @@ impl Work for Away {
     fn finish(self: Box<Self>) -> Result<Refined, String> {
         let Some(run) = &self.run else { return Err(String::new()) };
         let bytes = run.finish().map_err(sentence)?;
-        let level = Refined::unpack(&bytes, self.mesh.clone(), |i, out| run.large(i).copy_to(out));
+        let level = Refined::unpack(&bytes, self.mesh.clone(), run);
         level.map_err(|e| e.to_string())
     }
 }

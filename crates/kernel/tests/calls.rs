@@ -9,7 +9,7 @@ use limn_mesh::{Accepts, Boundary, Mesh, Plan, Refined, SCHEMES, SHAPES, Weld, r
 fn taken(run: &mut Run, mesh: Arc<Mesh>) -> Refined {
     let small = run.finish();
     let level = run.level().unwrap();
-    Refined::unpack(&small, mesh, |i, out| out.copy_from_slice(level.large(i))).unwrap()
+    Refined::unpack(&small, mesh, level).unwrap()
 }
 
 #[test]

@@ -85,3 +85,4 @@ pub use split::{FaceKind, FaceShape, Split};
 pub use topology::{Connectivity, Counts, Topology};
 pub use triangulate::{triangulate, triangulate_soup};
 pub use weld::{Weld, bounds};
+pub use wire::Large;

@@ -22,6 +22,7 @@ use crate::refined::{Faces, Refined, UvValues};
 use crate::scheme::{Boundary, Decay, FaceVarying, MOST_PARAMS, Params, Rules, TriangleRule, scheme};
 use crate::split::{FaceKind, FaceShape, Split, Triangles};
 use crate::topology::{Counts, Topology};
+use bytemuck::Pod;
 use std::sync::Arc;
 
 impl Mesh {
@@ -160,12 +161,36 @@ mod large {
     pub const COLORS: usize = 5;
     pub const NORMALS: usize = 6;
     pub const SOURCE: usize = 7;
-    pub const COUNT: usize = 8;
+}
+
+/// The arrays of a level, as bytes, wherever they are.
+pub trait Large {
+    /// How many bytes one has.
+    fn length(&self, i: usize) -> usize;
+
+    /// Copies it; there is room for as many.
+    fn copy_to(&self, i: usize, out: &mut [u8]);
+}
+
+impl Large for Refined {
+    fn length(&self, i: usize) -> usize {
+        self.large(i).len()
+    }
+
+    fn copy_to(&self, i: usize, out: &mut [u8]) {
+        out.copy_from_slice(self.large(i));
+    }
+}
+
+/// A copy of an array.
+fn taken<T: Pod>(arrays: &impl Large, i: usize) -> Vec<T> {
+    let mut values = bytemuck::zeroed_vec(arrays.length(i) / size_of::<T>());
+    arrays.copy_to(i, bytemuck::cast_slice_mut(&mut values));
+    values
 }
 
 impl Refined {
-    /// The level as bytes, without the mesh and the arrays that grow with it, whose lengths are there: they are to be taken by
-    /// themselves ([`Refined::large`]).
+    /// The level as bytes, without the mesh and the arrays that grow with it: they are taken by themselves ([`Large`]).
     pub fn pack(&self) -> Vec<u8> {
         let Refined {
             level,
@@ -199,7 +224,6 @@ impl Refined {
         out.number(known_normals.is_some().into());
         out.bytes(&kinds.iter().map(|&kind| kind as u8).collect::<Vec<_>>());
         put_split(&mut out, *split);
-        out.array(&std::array::from_fn::<u32, { large::COUNT }, _>(|i| self.large(i).len() as u32));
         out.finish()
     }
 
@@ -219,11 +243,11 @@ impl Refined {
         }
     }
 
-    /// The level of `mesh` that these bytes are; `fill` copies the bytes of a large array to where they belong. Cost: one copy.
+    /// The level of `mesh` that these bytes are, and its arrays. Cost: one copy.
     ///
     /// # Errors
     /// [`Damaged`].
-    pub fn unpack(bytes: &[u8], mesh: Arc<Mesh>, mut fill: impl FnMut(usize, &mut [u8])) -> Read<Refined> {
+    pub fn unpack(bytes: &[u8], mesh: Arc<Mesh>, arrays: &impl Large) -> Read<Refined> {
         let mut from = Reader::new(bytes);
         let level = from.number()?;
         let counts = counts(&mut from)?;
@@ -237,24 +261,10 @@ impl Refined {
             |&b: &u8| [FaceKind::Face, FaceKind::Edge, FaceKind::Vertex].get(usize::from(b)).copied().ok_or(Damaged);
         let kinds = from.bytes()?.iter().map(kind).collect::<Read<_>>()?;
         let split = split(&mut from)?;
-        let lengths: [u32; large::COUNT] = from.exactly()?;
-        let mut words = |i: usize| {
-            let mut words = vec![0u32; lengths[i] as usize / 4];
-            fill(i, bytemuck::cast_slice_mut(&mut words));
-            words
-        };
-        let [offsets, corners, uv_corners, source] =
-            [large::OFFSETS, large::CORNERS, large::UV_CORNERS, large::SOURCE].map(&mut words);
-        let mut triples = |i: usize| {
-            let mut triples = vec![[0.0f32; 3]; lengths[i] as usize / 12];
-            fill(i, bytemuck::cast_slice_mut(&mut triples));
-            triples
-        };
-        let [points, normals] = [large::POINTS, large::NORMALS].map(&mut triples);
-        let mut values = vec![[0.0f32; 2]; lengths[large::UV_VALUES] as usize / 8];
-        fill(large::UV_VALUES, bytemuck::cast_slice_mut(&mut values));
-        let mut colors = vec![[0.0f32; 4]; lengths[large::COLORS] as usize / 16];
-        fill(large::COLORS, bytemuck::cast_slice_mut(&mut colors));
+        let (offsets, corners) = (taken(arrays, large::OFFSETS), taken(arrays, large::CORNERS));
+        let (values, uv_corners) = (taken(arrays, large::UV_VALUES), taken(arrays, large::UV_CORNERS));
+        let (points, normals) = (taken(arrays, large::POINTS), taken(arrays, large::NORMALS));
+        let (colors, source) = (taken(arrays, large::COLORS), taken(arrays, large::SOURCE));
         Ok(Refined {
             level,
             counts,

@@ -69,9 +69,7 @@ fn meshes_plans_and_levels_come_back() {
                     assert_eq!(sent, plan);
                     let what = format!("{name}, {}, level {level}", scheme.info.id);
                     let there = refine(&copy, &sent, 1 << 30).unwrap();
-                    let back =
-                        Refined::unpack(&there.pack(), mesh.clone(), |i, out| out.copy_from_slice(there.large(i)))
-                            .unwrap();
+                    let back = Refined::unpack(&there.pack(), mesh.clone(), &there).unwrap();
                     same(&back, &there, &what);
                     assert!(Arc::ptr_eq(back.mesh(), &mesh));
                     same(&back, &refine(&mesh, &plan, 1 << 30).unwrap(), &what);
@@ -170,15 +168,15 @@ fn what_the_first_module_can_make() {
 fn damage_never_panics() {
     let mesh = build(&dressed(common::prism(3)));
     let plan = Plan::new(&SCHEMES[0], Boundary::default(), 1);
-    let refined = refine(&mesh, &plan, 1 << 20).unwrap().pack();
+    let refined = refine(&mesh, &plan, 1 << 20).unwrap();
     let unpack = |bytes: &[u8]| {
         [
             Mesh::unpack(bytes).is_err(),
             Plan::unpack(bytes).is_err(),
-            Refined::unpack(bytes, mesh.clone(), |_, _| ()).is_err(),
+            Refined::unpack(bytes, mesh.clone(), &refined).is_err(),
         ]
     };
-    for (kind, whole) in [mesh.pack(), plan.pack(), refined].iter().enumerate() {
+    for (kind, whole) in [mesh.pack(), plan.pack(), refined.pack()].iter().enumerate() {
         assert!(!unpack(whole)[kind]);
         for cut in 0..whole.len() {
             assert!(unpack(&whole[..cut])[kind], "cut at {cut}");
