@@ -22,7 +22,7 @@ const SCHEMES = /** @type {const} */ ([
   ["sqrt3", true],
 ]);
 /** Kept to what a software adapter takes a second for. */
-const MOST = 40_000;
+const MOST = 12_000;
 
 describe("refinement on the GPU", () => {
   const here = own();
