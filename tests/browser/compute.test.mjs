@@ -173,6 +173,21 @@ describe("refinement on the GPU", () => {
     }
   });
 
+  test("leaves it to the CPU once the GPU fails", async () => {
+    const source = await readFile(new URL("../../web/compute.js", import.meta.url), "utf8");
+    const broken = source.replace("await runner.prepare(this.drawing, drawn)", "await Promise.reject(new Error('lost'))");
+    assert.notEqual(broken, source);
+    here.site.extra.set("/web/compute.js", broken);
+    try {
+      const page = await open("#1;open+builtin:cube;scheme+catmull-clark;level+3");
+      assert.match((await said(page)) ?? "", / on the CPU /);
+      assert.equal((await state(page)).shown.faces, 384);
+      assert.deepEqual(await cards(page), []);
+    } finally {
+      here.site.extra.delete("/web/compute.js");
+    }
+  });
+
   test("a file has the bits of the command line", async () => {
     const page = await open("#1;open+builtin:pawn;scheme+loop;level+3");
     assert.match((await said(page)) ?? "", / on the GPU /);

@@ -88,32 +88,6 @@ struct HalfEdges {
     sharpness: Option<Id>,
 }
 
-/// What refining `cage` to `level` takes of memory on the GPU, in bytes. Cost: linear in the cage.
-pub fn fused_bytes(cage: &Cage<'_>, rules: &Rules, level: u32) -> u64 {
-    let split = rules.scheme.split();
-    // Half-edges: twin and origin, sharpness; of the dual split face and edge.
-    let word = if split == Split::Dual {
-        16
-    } else if cage.is_creased() && rules.scheme.softens() {
-        12
-    } else {
-        8u64
-    };
-    let (mut size, mut bytes) = (cage.size(), 0u64);
-    for k in 0..level {
-        let tables = if k == 0 && split != Split::Dual { 8 * size.half_edges + 4 * size.faces } else { 0 };
-        let held = word.saturating_mul(size.half_edges).saturating_add(20u64.saturating_mul(size.vertices));
-        bytes = bytes.saturating_add(held).saturating_add(tables);
-        size = size.split(split);
-    }
-    let faces = match split {
-        Split::Quad => size.faces.saturating_mul(24),
-        Split::Dual => size.half_edges.saturating_sub(size.faces.saturating_mul(2)).saturating_mul(72),
-        Split::Triangle | Split::Sqrt3 => size.faces.saturating_mul(72),
-    };
-    bytes.saturating_add(16u64.saturating_mul(size.vertices)).saturating_add(faces)
-}
-
 /// The program that refines `cage` to `to`, at least 1, by a scheme with kernels of its own. Cost: linear in the cage.
 ///
 /// # Errors
