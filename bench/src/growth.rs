@@ -20,14 +20,15 @@ const LEVEL: u32 = 2;
 const HIGHEST: u32 = 7;
 /// The largest cage's cells along one side.
 const LARGEST: u32 = 1024;
-/// A quick run ends where a level has more faces than this.
-const QUICK: f64 = 5e6;
+/// A quick run ends where a level has more faces than this, and takes every second level and cage.
+const QUICK: f64 = 2e6;
 
 /// Measures and prints both curves of both schemes that every engine has.
 ///
 /// # Errors
 /// One sentence, if Limn does not take a cage.
 pub fn run(bench: &mut Bench, word: &str, json: bool, quick: bool) -> Result<(), String> {
+    let step = if quick { 2 } else { 1 };
     for (id, model, ring, names) in [
         ("catmull-clark", "creature", "torus", ["cube", "torus"]),
         ("loop", "creature-triangles", "triangles", ["cube, triangles", "torus, triangles"]),
@@ -36,14 +37,17 @@ pub fn run(bench: &mut Bench, word: &str, json: bool, quick: bool) -> Result<(),
             let name = if id == "loop" { "creature, triangles" } else { "creature" };
             let soup = cage(model, 0);
             let few = |level: &u32| !quick || soup.face_count() as f64 * 4f64.powi(*level as i32) < QUICK;
-            let jobs = (0..=HIGHEST).filter(few).map(|level| (name.to_owned(), soup.clone(), level));
+            let jobs = (u32::from(quick)..=HIGHEST)
+                .step_by(step)
+                .filter(few)
+                .map(|level| (name.to_owned(), soup.clone(), level));
             series(bench, "levels", id, jobs, json)?;
         }
         if format!("{id} cages").contains(word) {
             let cube = if id == "loop" { triangulate_soup(&cage("cube", 0)).0 } else { cage("cube", 0) };
             let per_cell = if id == "loop" { 2.0 } else { 1.0 };
             let few = |k: &u32| !quick || per_cell * 4f64.powi((k + LEVEL) as i32) < QUICK;
-            let sizes = (2..=LARGEST.ilog2()).filter(few);
+            let sizes = (2..=LARGEST.ilog2()).step_by(step).filter(few);
             let rings = sizes.map(|k| (format!("{} {n}x{n}", names[1], n = 1 << k), cage(ring, 1 << k)));
             let cages = std::iter::once((names[0].to_owned(), cube)).chain(rings);
             series(bench, "cages", id, cages.map(|(name, soup)| (name, soup, LEVEL)), json)?;

@@ -19,6 +19,7 @@ use limn_kernel::trial::same::{Sorted, Surface};
 use limn_kernel::trial::surface;
 use limn_mesh::grouped;
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Instant;
 
 /// How far apart points of equal work may lie, in units of meshes that are two to three units in size.
 const TOLERANCE: f64 = 1e-5;
@@ -36,19 +37,24 @@ pub struct Pace {
     pub patience: f64,
     /// Seconds that one run may take.
     pub longest: f64,
+    /// Seconds after which no further job is begun.
+    pub whole: f64,
 }
 
 impl Pace {
     /// As exact as it gets.
-    pub const FULL: Pace = Pace { rounds: 21, patience: 0.4, longest: 4.0 };
-    /// Ends within three minutes.
-    pub const QUICK: Pace = Pace { rounds: 5, patience: 0.2, longest: 0.8 };
+    pub const FULL: Pace = Pace { rounds: 21, patience: 0.4, longest: 4.0, whole: f64::INFINITY };
+    /// Ends within three minutes: a job takes some ten seconds at most.
+    pub const QUICK: Pace = Pace { rounds: 5, patience: 0.2, longest: 0.8, whole: 160.0 };
 }
 
 /// Engines, and what is known by now.
 pub struct Bench {
     engines: Vec<Box<dyn Engine>>,
     pace: Pace,
+    begun: Instant,
+    /// Jobs that came too late.
+    late: usize,
     /// Seconds and bytes a face, by engine and scheme, as last seen.
     costs: BTreeMap<(String, String), (f64, f64)>,
     left_out: BTreeSet<(String, String)>,
@@ -75,6 +81,8 @@ impl Bench {
         Bench {
             engines,
             pace,
+            begun: Instant::now(),
+            late: 0,
             costs: BTreeMap::new(),
             left_out: BTreeSet::new(),
             lost: BTreeMap::new(),
@@ -88,11 +96,15 @@ impl Bench {
         self.engines.iter().filter(|e| !is_twin(e.id())).map(|e| (e.id().to_owned(), e.name().to_owned())).collect()
     }
 
-    /// Runs a job on every engine that takes it; the rows, Limn's first, are kept in the report as well.
+    /// Runs a job on every engine that takes it; the rows, Limn's first, are kept in the report as well. None where time is up.
     ///
     /// # Errors
     /// One sentence, if Limn itself does not take it.
     pub fn measure(&mut self, series: &str, mesh: &str, job: &Job<'_>) -> Result<Vec<Row>, String> {
+        if self.begun.elapsed().as_secs_f64() > self.pace.whole {
+            self.late += 1;
+            return Ok(Vec::new());
+        }
         let ours = refined(job, None)?;
         let faces = ours.faces.count();
         let plain = ours.points.len() as u64 * 12 + ours.faces.corners().len() as u64 * 4;
@@ -239,6 +251,10 @@ impl Bench {
                 let text = format!("{} {excuse}, and has no figure where it does: {}.", engine.name(), jobs.join("; "));
                 self.report.notes.push(text);
             }
+        }
+        if self.late > 0 {
+            let (late, whole) = (self.late, self.pace.whole);
+            self.report.notes.push(format!("Time was up after {whole:.0} s: {late} jobs at the end are left out."));
         }
         (self.report, self.differ)
     }
@@ -431,6 +447,16 @@ mod tests {
             bench.report.notes,
             ["Off is left out at catmull-clark, cube, level 2, 96 faces: a run would take 0.0 s."]
         );
+    }
+
+    #[test]
+    fn jobs_that_come_too_late_are_left_out_and_counted() {
+        let soup = cages::cage("cube", 0);
+        let mut bench = Bench::new(vec![Box::new(Off(0.0))], Machine::default(), Pace { whole: 0.0, ..Pace::QUICK });
+        for _ in 0..2 {
+            assert!(bench.measure("table", "cube", &Job::new("catmull-clark", 2, &soup)).unwrap().is_empty());
+        }
+        assert_eq!(bench.finish().0.notes, ["Time was up after 0 s: 2 jobs at the end are left out."]);
     }
 
     #[test]
