@@ -3,6 +3,7 @@
 // scheme, which records its own rules on small patches; nothing is drawn by hand. Fetched when it is first asked for.
 
 import { byId, el, setAttr, styles } from "./dom.js";
+import { KERNEL } from "./vectors.js";
 
 /** @typedef {import("./protocol.js").State} State */
 /** @typedef {{ title: string, target: [number, number], points: [number, number][], faces: number[][], weights: [number, number, string][] }} Stencil */
@@ -27,7 +28,7 @@ export class About {
 
   /** Ready to be shown. */
   static async create(/** @type {() => void} */ resized) {
-    const base = new URL("../pkg/kernel/limn_kernel", import.meta.url).href;
+    const base = new URL(`../pkg/${KERNEL}/limn_kernel`, import.meta.url).href;
     /** @type {[import("./protocol.js").WasmModule, unknown]} */
     const [module] = await Promise.all([import(`${base}.js`), styles("web/about.css")]);
     await module.default({ module_or_path: fetch(`${base}_bg.wasm`) });

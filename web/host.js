@@ -94,7 +94,7 @@ export function createHost(post) {
     let made;
     try {
       // Another address each time: a browser may keep what failed, and a module that ran out of memory is of no more use.
-      const { Kernel } = await load("kernel", tries ? `?${tries}` : "");
+      const { Kernel } = await load((await import("./vectors.js")).KERNEL, tries ? `?${tries}` : "");
       const kernel = new Kernel();
       made = drawsOn === "webgpu" ? await (await import("./compute.js")).attach(kernel, () => enter((e) => e.work(0))) : kernel;
     } catch {}
@@ -239,7 +239,7 @@ export function createHost(post) {
  * @returns {Promise<import("./protocol.js").WasmModule>}
  */
 async function load(id, again = "") {
-  const base = new URL(`../pkg/${id}/limn_${id === "kernel" ? id : "engine"}`, import.meta.url).href;
+  const base = new URL(`../pkg/${id}/limn_${id < "w" ? "kernel" : "engine"}`, import.meta.url).href;
   const [module, wasm] = await Promise.all([import(`${base}.js${again}`), fetch(`${base}_bg.wasm`)]);
   await module.default({ module_or_path: wasm });
   return module;

@@ -123,14 +123,16 @@ function chrome() {
 
 /**
  * A headless Chromium that has WebGPU and WebGL2, both drawn in software; or by the machine's own adapter, which may not be there.
- * @param {{ software?: boolean }} [options]
+ * WebAssembly in it has vectors, unless it is told that the processor has none.
+ * @param {{ software?: boolean, vectors?: boolean }} [options]
  */
-export function launch({ software = true } = {}) {
+export function launch({ software = true, vectors = true } = {}) {
   return chromium.launch({
     executablePath: chrome(),
     args: [
       "--no-sandbox",
       ...(software ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--use-webgpu-adapter=swiftshader", "--use-vulkan=swiftshader"] : []),
+      ...(vectors ? [] : ["--js-flags=--no-enable-sse4-1"]),
       "--enable-unsafe-webgpu",
       "--enable-features=Vulkan,WebGPU",
       "--disable-quic",

@@ -99,7 +99,7 @@ fn wasm(filter: Option<&str>, tally: &mut Tally) -> Result<()> {
 pub fn wasi(subcommand: &str) -> Command {
     let mut command = process::cargo();
     command.args([subcommand, "--target", WASI, "--target-dir"]).arg(paths::root().join("target/wasm-tests"));
-    command.env("RUSTFLAGS", toolchain::wasm_flags());
+    command.env("RUSTFLAGS", toolchain::wasm_flags(true));
     let runner = paths::root().join("tests/wasi.mjs");
     command.env("CARGO_TARGET_WASM32_WASIP1_RUNNER", format!("node {}", runner.display()));
     command

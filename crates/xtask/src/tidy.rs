@@ -75,7 +75,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
         clippy.args(module.features());
         // One folder for all: what they share is checked once, and nothing is linked.
         clippy.arg("--target-dir").arg(paths::root().join("target/wasm-clippy"));
-        clippy.env("RUSTFLAGS", toolchain::wasm_flags()).args(["--", "-D", "warnings"]);
+        clippy.env("RUSTFLAGS", toolchain::wasm_flags(true)).args(["--", "-D", "warnings"]);
         check("clippy on a wasm module", process::succeeds(no_panic(&mut clippy))?);
     }
 

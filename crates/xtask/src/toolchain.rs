@@ -17,12 +17,14 @@ pub const WASI: &str = "wasm32-wasip1";
 /// What a Chromium may be called.
 const CHROMIUMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Vector instructions are in every browser of the last years, and the compiler uses them only where the bits stay.
-/// Messages of panics name source files: without the builder's own folders, so that what ships is the same wherever it
+/// What rustc is told for WebAssembly. Vector instructions are in every browser of the last years (Safari's since 16.4), and the
+/// compiler uses them only where the bits stay; what others load is built without them. Messages of panics name source files: without the builder's own folders, so that what ships is the same wherever it
 /// is built.
-pub fn wasm_flags() -> String {
+pub fn wasm_flags(vectors: bool) -> String {
     let mut flags = std::env::var("RUSTFLAGS").unwrap_or_default();
-    flags.push_str(" -Ctarget-feature=+simd128");
+    if vectors {
+        flags.push_str(" -Ctarget-feature=+simd128");
+    }
     let home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));

@@ -1,4 +1,4 @@
-//! Building the wasm modules: the engine, twice, the files' readers and writers, and the kernel with every scheme, twice.
+//! Building the wasm modules: the engine, twice, the files' readers and writers, and the kernel with every scheme, three times.
 //!
 //! ```text
 //! crates/engine ──cargo rustc──► target/wasm-webgpu/…/limn_engine.wasm ──wasm-bindgen──► target/wasm-webgpu/pkg-serve/
@@ -6,7 +6,9 @@
 //! ```
 //!
 //! There are two engines because WebGL2 support costs half a megabyte that most visitors never need; the page probes
-//! for WebGPU and loads one. `wasm-bindgen` runs in this process, so nobody has to install a command of exactly the
+//! for WebGPU and loads one. Browsers without vectors have no WebGPU either: the engine for WebGL2 and the files' module do without
+//! (measured: they gain nothing by them), and of the kernel there is one more for these browsers (patches take a quarter of their
+//! time by vectors of eight, and as long as level by level without any). `wasm-bindgen` runs in this process, so nobody has to install a command of exactly the
 //! right version. Costs, warm: nothing changed, nothing is done; one line changed, a few seconds (profile `serve`);
 //! profile `dist` links everything afresh, close to a minute a module.
 
@@ -38,17 +40,24 @@ pub enum Module {
     Files,
     /// Refines by every scheme: loaded when one is chosen that the engine has no rules of.
     Kernel,
-    /// The same with what benchmarks need: loaded by `?bench` alone.
+    /// The same for browsers without vector instructions.
+    Plain,
+    /// The kernel with what benchmarks need: loaded by `?bench` alone.
     Trial,
 }
 
 impl Module {
     /// All, the one that most visitors load first.
-    pub const ALL: [Self; 5] = [Self::WebGpu, Self::Files, Self::Kernel, Self::WebGl, Self::Trial];
+    pub const ALL: [Self; 6] = [Self::WebGpu, Self::Files, Self::Kernel, Self::WebGl, Self::Plain, Self::Trial];
 
     /// Whether it is an engine: what draws, and what a first visit loads one of.
     pub fn is_engine(self) -> bool {
         matches!(self, Self::WebGpu | Self::WebGl)
+    }
+
+    /// Whether it is made of vector instructions, and so runs only where they are.
+    fn has_vectors(self) -> bool {
+        matches!(self, Self::WebGpu | Self::Kernel | Self::Trial)
     }
 
     /// The crate that it is made from.
@@ -56,7 +65,7 @@ impl Module {
         match self {
             Self::WebGpu | Self::WebGl => "limn-engine",
             Self::Files => "limn-files",
-            Self::Kernel | Self::Trial => "limn-kernel",
+            Self::Kernel | Self::Plain | Self::Trial => "limn-kernel",
         }
     }
 
@@ -65,7 +74,7 @@ impl Module {
         match self {
             Self::WebGpu => &["--no-default-features", "--features", "webgpu"],
             Self::WebGl => &["--no-default-features", "--features", "webgl"],
-            Self::Kernel => &["--no-default-features"],
+            Self::Kernel | Self::Plain => &["--no-default-features"],
             Self::Files | Self::Trial => &[],
         }
     }
@@ -83,6 +92,7 @@ impl Module {
             Self::WebGl => "webgl",
             Self::Files => "files",
             Self::Kernel => "kernel",
+            Self::Plain => "plain",
             Self::Trial => "trial",
         }
     }
@@ -92,7 +102,7 @@ impl Module {
         Self::ALL
             .into_iter()
             .find(|module| module.id() == id)
-            .with_context(|| format!("`{id}` is no module: webgpu, webgl, files, kernel or trial"))
+            .with_context(|| format!("`{id}` is no module: webgpu, webgl, files, kernel, plain or trial"))
     }
 
     /// The target folder that it has for itself.
@@ -161,11 +171,11 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
     let faster = match module {
         Module::Files => Some(READS_FAST),
-        Module::Kernel | Module::Trial => Some(REFINES_FAST),
+        Module::Kernel | Module::Plain | Module::Trial => Some(REFINES_FAST),
         Module::WebGpu | Module::WebGl => None,
     };
     command.args(faster.iter().flat_map(|setting| ["--config", setting]));
-    command.env("RUSTFLAGS", toolchain::wasm_flags());
+    command.env("RUSTFLAGS", toolchain::wasm_flags(module.has_vectors()));
     if !process::succeeds(&mut command)? {
         // The compiler has just told the terminal; the second run, of the failing crate alone, is for the page.
         let again = command.args(["--quiet", "--color", "never"]).output()?;

@@ -14,7 +14,7 @@
 //! Cost: about the squared size of the ring times the points of the grid, once a class and depth. Memory: 4 bytes times the
 //! ring a point, per class.
 
-use super::grid::LANES;
+use super::grid::BLOCK;
 use super::layout::{Layout, place};
 use super::ring::{self, Corner, Ring};
 use crate::connect::connect;
@@ -276,7 +276,7 @@ impl Classes {
     }
 
     fn table(&self, number: u32) -> Table {
-        let lanes = LANES;
+        let lanes = BLOCK;
         let exact = &self.classes[number as usize].exact[self.depth as usize];
         let points = self.grids[self.depth as usize].points;
         let columns: Vec<&[f64]> = exact.chunks_exact(points).collect();

@@ -14,14 +14,22 @@
 
 use super::class::Table;
 
-/// Patches that are worked on at once: eight on the web and natively, four by four or eight at once as the machine can.
+/// Patches that are worked on at once: eight, four by four or eight at once as the machine can; one by one in WebAssembly
+/// without vectors, where eight numbers are as much work as eight times one and have no place but memory. Lanes do not meet, so
+/// the bits are the same.
+#[cfg(not(all(target_family = "wasm", not(target_feature = "simd128"))))]
 pub(super) const LANES: usize = 8;
+#[cfg(all(target_family = "wasm", not(target_feature = "simd128")))]
+pub(super) const LANES: usize = 1;
+/// Points whose weights lie together in a table.
+pub(super) const BLOCK: usize = 8;
 /// Steps along a side that a patch has at most.
 pub(super) const MOST_STEPS: usize = 32;
 
 /// A point of each of eight patches.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(32))]
+#[repr(C)]
+#[cfg_attr(not(all(target_family = "wasm", not(target_feature = "simd128"))), repr(align(32)))]
 pub(super) struct Cell(pub [[f32; LANES]; 3]);
 
 impl Cell {
@@ -42,9 +50,9 @@ impl Cell {
     }
 }
 
-/// A value for each lane, written out: what begins as zeros and is filled lane by lane is a block of memory to compilers, and on
+/// Eight values, written out: what begins as zeros and is filled lane by lane is a block of memory to compilers, and on
 /// the web every copy of a block is a call.
-macro_rules! lanes {
+macro_rules! eight {
     ($l:ident => $value:expr) => {
         [
             {
@@ -83,6 +91,21 @@ macro_rules! lanes {
     };
 }
 
+/// A value for each lane.
+#[cfg(all(target_family = "wasm", not(target_feature = "simd128")))]
+macro_rules! lanes {
+    ($l:ident => $value:expr) => {
+        [{
+            const $l: usize = 0;
+            $value
+        }]
+    };
+}
+#[cfg(not(all(target_family = "wasm", not(target_feature = "simd128"))))]
+pub(super) use eight as lanes;
+#[cfg(all(target_family = "wasm", not(target_feature = "simd128")))]
+pub(super) use lanes;
+
 /// A value for each coordinate and lane.
 macro_rules! cell {
     ($k:ident, $l:ident => $value:expr) => {
@@ -93,6 +116,7 @@ macro_rules! cell {
         ])
     };
 }
+pub(super) use cell;
 
 /// Room for the grids of eight patches of `m` steps: points, and behind them a strip of m + 1 for each side, the row of
 /// points across it. Of triangles a strip has m points. Where nothing is across it is the side itself.
@@ -204,11 +228,11 @@ impl Table {
     /// The grids of patches with that ring, the first points and strips of them: `controls` are the active ones.
     #[inline(always)]
     pub(super) fn evaluate(&self, controls: &[Cell], out: &mut [Cell]) {
-        let blocks = self.weights.chunks_exact(controls.len() * LANES);
-        for (block, out) in blocks.zip(out.chunks_mut(LANES)) {
+        let blocks = self.weights.chunks_exact(controls.len() * BLOCK);
+        for (block, out) in blocks.zip(out.chunks_mut(BLOCK)) {
             // Two points at once: each control point is read half as often.
             for (i, out) in out.chunks_mut(2).enumerate() {
-                let weights = block.as_chunks::<LANES>().0;
+                let weights = block.as_chunks::<BLOCK>().0;
                 let ([weights, more @ ..], [p, others @ ..]) = (weights, controls) else { return };
                 let [a, b] = weights.as_chunks::<2>().0[i];
                 let (mut first, mut second) = (cell!(K, L => a * p.0[K][L]), cell!(K, L => b * p.0[K][L]));
@@ -230,15 +254,15 @@ impl Table {
     /// The same of one patch, into its lane: where there are too few with that ring.
     #[inline(always)]
     pub(super) fn evaluate_one(&self, controls: &[[f32; 3]], lane: usize, out: &mut [Cell]) {
-        let blocks = self.weights.chunks_exact(controls.len() * LANES);
-        for (block, out) in blocks.zip(out.chunks_mut(LANES)) {
-            let weights = block.as_chunks::<LANES>().0;
+        let blocks = self.weights.chunks_exact(controls.len() * BLOCK);
+        for (block, out) in blocks.zip(out.chunks_mut(BLOCK)) {
+            let weights = block.as_chunks::<BLOCK>().0;
             let ([weights, more @ ..], [p, others @ ..]) = (weights, controls) else { return };
-            let [mut x, mut y, mut z] = cell!(K, L => weights[L] * p[K]).0;
+            let [mut x, mut y, mut z] = p.map(|p| eight!(L => weights[L] * p));
             for (weights, p) in more.iter().zip(others) {
-                x = lanes!(L => x[L] + weights[L] * p[0]);
-                y = lanes!(L => y[L] + weights[L] * p[1]);
-                z = lanes!(L => z[L] + weights[L] * p[2]);
+                x = eight!(L => x[L] + weights[L] * p[0]);
+                y = eight!(L => y[L] + weights[L] * p[1]);
+                z = eight!(L => z[L] + weights[L] * p[2]);
             }
             for (l, out) in out.iter_mut().enumerate() {
                 out.set(lane, [x[l], y[l], z[l]]);

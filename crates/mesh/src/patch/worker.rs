@@ -11,7 +11,7 @@
 //! Cost: `grid.rs`.
 
 use super::class::{Classes, Tabled};
-use super::grid::{self, Cell, LANES, Rows, Spline};
+use super::grid::{self, Cell, LANES, Rows, Spline, cell, lanes};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
 use super::turn::{self, Eight, Plain, Turn};
@@ -327,9 +327,8 @@ impl Room {
         let last = group.patches.len().clamp(1, LANES) - 1;
         for control in &group.controls {
             let at = |lane: usize| old[control[lane.min(last)] as usize];
-            let p = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
-            let along = |k: usize| [p[0][k], p[1][k], p[2][k], p[3][k], p[4][k], p[5][k], p[6][k], p[7][k]];
-            self.controls.push(Cell([along(0), along(1), along(2)]));
+            let p = lanes!(L => at(L));
+            self.controls.push(cell!(K, L => p[L][K]));
         }
         if let (0, Some(spline)) = (class, &self.spline) {
             spline.evaluate(layout.m, &self.controls, shaded, &mut self.lines, &mut self.points);
