@@ -143,7 +143,11 @@ fn buffers_are_used_again() {
     for level in 3..=4 {
         let plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::default(), level);
         let job = |soup: &Soup| Job::new(build(soup), plan.clone(), u64::MAX).unwrap().shaded();
-        let (fresh, reused) = (job(&moved).finish(), job(&moved).reusing(job(&soup).finish()).finish());
+        let old = job(&soup).finish();
+        let buffers = [old.points.as_ptr(), old.known_normals.as_ref().unwrap().as_ptr()];
+        let (fresh, reused) = (job(&moved).finish(), job(&moved).reusing(old).finish());
+        let filled = [reused.points.as_ptr(), reused.known_normals.as_ref().unwrap().as_ptr()];
+        assert_eq!(buffers, filled, "level {level}: other buffers were filled");
         assert_eq!((&fresh.points, &fresh.faces), (&reused.points, &reused.faces), "level {level}");
         assert_eq!(fresh.known_normals, reused.known_normals, "level {level}");
         // So are another model's, corners with them, whether there is room or not.

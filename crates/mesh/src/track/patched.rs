@@ -26,6 +26,8 @@ pub(crate) struct Patched {
     pub(crate) normals: Vec<[f32; 3]>,
     /// Whether corners are there already.
     listed: bool,
+    /// Points of a level that is not needed any more: a buffer to be filled, once the levels before are made.
+    spare: Vec<[f32; 3]>,
 }
 
 impl Track {
@@ -34,7 +36,7 @@ impl Track {
         if self.patched.from.is_none() || !self.new_points.is_empty() {
             return;
         }
-        self.new_points = old.points;
+        self.patched.spare = old.points;
         self.patched.normals = old.known_normals.filter(|_| self.patched.shaded).unwrap_or_default();
         if let Faces::Quads(corners) | Faces::Triangles(corners) = old.faces {
             (self.corners, self.patched.listed) = (corners, same);
@@ -60,6 +62,7 @@ impl Track {
         let tags = plan.tags(step, self.level, sharp, self.creases.as_ref());
         if self.patched.patches.is_none() {
             self.patched.patches = Patches::new(*step, plan.rules, plan.level - self.level, self.counts).map(Box::new);
+            self.new_points = std::mem::take(&mut self.patched.spare);
         }
         let progress = match &mut self.patched.patches {
             Some(patches) => {
