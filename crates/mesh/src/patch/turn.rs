@@ -35,6 +35,10 @@ pub(super) trait Turn: Copy {
 
     /// Writes the ids that a run takes from patches.
     fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]);
+
+    /// Says that `count` values from `at` on will be written soon.
+    #[inline(always)]
+    fn expect<T>(self, _out: &[T], _at: usize, _count: usize) {}
 }
 
 /// One by one.
@@ -94,7 +98,18 @@ mod wide {
             // SAFETY: as above.
             unsafe { turned_ids(run, ids, out) }
         }
+
+        #[inline(always)]
+        fn expect<T>(self, out: &[T], at: usize, count: usize) {
+            for line in out[at..at + count].chunks(LINE / size_of::<T>()) {
+                // SAFETY: nothing is read; every processor of this kind has the instruction.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) };
+            }
+        }
     }
+
+    /// Bytes that a processor fetches at once.
+    const LINE: usize = 64;
 
     #[target_feature(enable = "avx2")]
     fn points(run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {

@@ -55,8 +55,8 @@ struct Room {
     normals: Vec<Cell>,
     lines: Vec<Cell>,
     rows: Rows,
-    /// The ids of points, place by place, and of one side.
-    ids: Vec<Eight>,
+    /// The ids of points, place by place, of these eight patches and of those before; and of one side.
+    ids: [Vec<Eight>; 2],
     side: Vec<u32>,
 }
 
@@ -92,6 +92,17 @@ fn parts<T>(mut rest: &mut [T], ranges: impl Iterator<Item = Range<usize>>) -> V
 }
 
 impl<'a> Target<'a> {
+    /// Says that the points of a patch will be written soon: they lie in so many places that the processor cannot guess these.
+    #[inline(always)]
+    fn expect(&self, layout: &Layout, q: u32, turn: impl Turn) {
+        let i = (q - self.first) as usize;
+        for parts in [&self.points, &self.normals] {
+            for (run, part) in layout.runs.iter().zip(parts) {
+                turn.expect(part, i * run.per as usize, run.per as usize);
+            }
+        }
+    }
+
     /// The parts of some ranges of patches, which rise.
     pub(super) fn cut(layout: &Layout, ranges: &[Range<u32>], out: &'a mut Out<'_>, kept: &'a mut Kept) -> Vec<Self> {
         // Run by run, and within a run range by range: that is how they lie in memory.
@@ -148,7 +159,7 @@ impl Worker {
                 normals: grid::room(layout.m),
                 lines: Vec::new(),
                 rows: Rows::new(layout.m),
-                ids: vec![[0; LANES]; layout.points],
+                ids: [0, 1].map(|_| vec![[0; LANES]; layout.points]),
                 side: vec![0; layout.m],
             },
             rims: Rims::default(),
@@ -205,6 +216,9 @@ impl Worker {
     ) -> bool {
         let Worker { classes, ring, waiting, room, rims } = self;
         let shaded = !target.normals.is_empty();
+        if !target.corners.is_empty() {
+            room.list(layout, c, patches.clone(), (target, turn));
+        }
         let mut next = patches.start;
         // Which classes have been emptied of groups, and of lone patches.
         let (mut emptied, mut cleared) = (0, 0);
@@ -218,6 +232,7 @@ impl Worker {
                 }
                 let Some(class) = room.class_of(classes, ring, waiting, tabled) else { return false };
                 waiting[class].add(next, ring, room.active(classes, class));
+                target.expect(layout, next, turn);
                 ready = (waiting[class].patches.len() == LANES).then_some(class);
                 next += 1;
             }
@@ -358,9 +373,6 @@ impl Room {
         let (sides, m) = (layout.sides, layout.m);
         let shaded = !target.normals.is_empty();
         let first = target.first;
-        if !target.corners.is_empty() {
-            self.number(layout, c, patches);
-        }
         deal(layout, &self.points, patches, first, &mut target.points, turn);
         if shaded {
             let size = (sides, m, layout.points);
@@ -386,41 +398,57 @@ impl Room {
                 }
             }
         }
-        if !target.corners.is_empty() {
-            self.list(layout, patches, target, turn);
+    }
+
+    /// The corners of patches' faces: eight patches after eight, whatever their classes, so that runs are written from end to end.
+    #[inline(always)]
+    fn list<C: Connectivity>(
+        &mut self,
+        layout: &Layout,
+        c: &C,
+        patches: Range<u32>,
+        (target, turn): (&mut Target<'_>, impl Turn),
+    ) {
+        let mut group = patches.start..patches.start;
+        while group.start < patches.end {
+            let before = group.clone();
+            group = before.end..patches.end.min(before.end + LANES as u32);
+            // Long before they are read, see [`Waiting`].
+            self.ids.swap(0, 1);
+            self.number(layout, c, group.clone());
+            for (run, part) in layout.face_runs.iter().zip(&target.corners) {
+                let per = run.per as usize * layout.sides;
+                turn.expect(part, (group.start - target.first) as usize * per, group.len() * per);
+            }
+            let lanes: Eight = std::array::from_fn(|l| before.start + l as u32);
+            for (run, part) in layout.face_runs.iter().zip(&mut target.corners).filter(|_| !before.is_empty()) {
+                let (places, per) = (&layout.faces[run.first..], run.per as usize * layout.sides);
+                let run = turn::Run { places, per, patches: &lanes[..before.len()], first: target.first };
+                turn.ids(&run, &self.ids[1], part);
+            }
         }
     }
 
-    /// The ids of patches' points: long before they are read, see [`Waiting`].
+    /// The ids of the points of up to eight consecutive patches.
     #[inline(always)]
-    fn number<C: Connectivity>(&mut self, layout: &Layout, c: &C, patches: &[u32]) {
-        let (sides, m) = (layout.sides as u32, layout.m);
-        let mut q = [0; LANES];
-        q.iter_mut().zip(patches).for_each(|(q, patch)| *q = *patch);
-        for (ids, &[base, per]) in self.ids.iter_mut().zip(&layout.ids) {
+    fn number<C: Connectivity>(&mut self, layout: &Layout, c: &C, patches: Range<u32>) {
+        let (sides, m, ids) = (layout.sides as u32, layout.m, &mut self.ids[0]);
+        let lanes: Eight = std::array::from_fn(|l| patches.start + l as u32);
+        for (ids, &[base, per]) in ids.iter_mut().zip(&layout.ids) {
             for l in 0..LANES {
-                ids[l] = base.wrapping_add(per.wrapping_mul(q[l]));
+                ids[l] = base.wrapping_add(per.wrapping_mul(lanes[l]));
             }
         }
-        for (lane, &q) in patches.iter().enumerate() {
+        for (lane, q) in patches.enumerate() {
             for (h, border) in (sides * q..).zip(layout.border.chunks_exact(m)) {
                 let (seam, other) = layout.seam(c, h);
                 seam.ids(q, other, &mut self.side);
                 self.side[0] = c.origin(h);
                 self.side[m / 2] = layout.first_edge + c.edge(h);
                 for (&id, &place) in self.side.iter().zip(border) {
-                    self.ids[usize::from(place)][lane] = id;
+                    ids[usize::from(place)][lane] = id;
                 }
             }
-        }
-    }
-
-    /// The corners of patches' faces.
-    #[inline(always)]
-    fn list(&self, layout: &Layout, patches: &[u32], target: &mut Target<'_>, turn: impl Turn) {
-        for (run, part) in layout.face_runs.iter().zip(&mut target.corners) {
-            let (places, per) = (&layout.faces[run.first..], run.per as usize * layout.sides);
-            turn.ids(&turn::Run { places, per, patches, first: target.first }, &self.ids, part);
         }
     }
 }
