@@ -60,47 +60,62 @@ impl Ring {
             tags.sharp.get(v as usize).is_some_and(|&sharp| sharp) || tags.creases.is_some_and(|c| c.is_marked(v))
         };
         let plain = !(first..first + sides as u32).any(|h| marked(c.origin(h)));
-        plain && self.read_regular(c, sides, q) || self.read_any(c, sides, q, tags)
+        plain && self.read_inner(c, sides, q) || self.read_any(c, sides, q, tags)
     }
 
-    /// Reads a ring whose corners all have valence 4 (6, of triangles), which is most of them.
+    /// Reads a ring without boundaries and marks, which is most of them.
     #[inline(always)]
-    fn read_regular<C: Connectivity>(&mut self, c: &C, sides: usize, q: u32) -> bool {
+    fn read_inner<C: Connectivity>(&mut self, c: &C, sides: usize, q: u32) -> bool {
         let first = sides as u32 * q;
         let quads = sides == 4;
+        // Around a corner two spokes of quads, three of triangles end at what other corners list.
+        let (regular, others) = if quads { (4, 2) } else { (6, 3) };
+        self.key.clear();
         self.controls.clear();
         self.controls.extend((first..first + sides as u32).map(|h| c.origin(h)));
+        let mut plain = true;
         let mut across = c.twin(first + sides as u32 - 1);
         for h in first..first + sides as u32 {
             let side = c.twin(h);
             if is_boundary(across) || is_boundary(side) {
                 return false;
             }
+            // The last spoke, and the first that is not listed.
+            let mut last = c.next(side);
+            if across == last {
+                return false;
+            }
+            if !quads {
+                let before = c.twin(last);
+                if is_boundary(before) {
+                    return false;
+                }
+                last = c.next(before);
+            }
+            let mut listed = 0;
             let mut spoke = across;
-            // Faces behind the one across the last side: two spokes each of quads, three of triangles.
-            for far in 0..if quads { 2 } else { 3 } {
+            while spoke != last {
                 let arriving = c.prev(spoke);
-                if quads && far > 0 {
+                if quads && listed > 0 {
                     self.controls.push(c.origin(c.prev(arriving)));
                 }
                 self.controls.push(c.origin(arriving));
                 spoke = c.twin(arriving);
-                // Back at the patch already: valence 3, or 2, goes round twice.
-                if is_boundary(spoke) || spoke == h {
+                listed += 1;
+                if is_boundary(spoke) || listed + others > MOST_SPOKES {
                     return false;
                 }
             }
-            if !quads {
-                // The last spoke's end is the next corner's first.
-                let arriving = c.prev(spoke);
-                spoke = c.twin(arriving);
-            }
-            if spoke != c.next(side) {
-                return false;
-            }
+            let n = listed + others;
+            plain &= n == regular;
+            self.key.push((n as u32) << 2);
             across = side;
         }
-        true
+        if plain {
+            self.key.clear();
+        }
+        // What has no ring is for the other way to say.
+        sides == 4 || self.key.iter().filter(|&&word| word == 3 << 2).count() < 2
     }
 
     /// Reads any ring.
