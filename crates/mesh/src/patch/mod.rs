@@ -305,25 +305,25 @@ impl Patches {
     }
 
     /// Puts together what patches left for edges and vertices: edges first, then vertices.
-    fn borders<C: Connectivity>(&self, c: &C, range: Range<u32>, out: &mut Out<'_>) {
-        let (first, kept) = (self.layout.first_edge, &self.kept);
-        let edges = c.edges();
-        let shaded = !kept.normals.is_empty();
-        for e in range.start.min(edges)..range.end.min(edges) {
-            let (h, id) = (c.edge_half_edge(e) as usize, (first + e) as usize);
-            out.points[id] = kept.points[h][1];
-            if shaded {
-                out.normals[id] = kept.normals[h][1];
-            }
+    fn borders<C: Connectivity + Sync>(&self, c: &C, range: Range<u32>, out: &mut Out<'_>) {
+        let Kept { points, normals } = &self.kept;
+        let (first, edges) = (self.layout.first_edge as usize, c.edges());
+        let from = range.start.min(edges);
+        let middle = |i: u32| c.edge_half_edge(from + i) as usize;
+        let part = first + from as usize..first + range.end.min(edges) as usize;
+        fill(&mut out.points[part.clone()], |i| points[middle(i)][1]);
+        if !normals.is_empty() {
+            fill(&mut out.normals[part], |i| normals[middle(i)][1]);
         }
-        for v in range.start.max(edges)..range.end.max(edges) {
-            let v = v - edges;
-            out.points[v as usize] = kept.points[c.vertex_half_edge(v) as usize][0];
-            if shaded {
+        let from = range.start.max(edges) - edges;
+        let part = from as usize..(range.end.max(edges) - edges) as usize;
+        fill(&mut out.points[part.clone()], |i| points[c.vertex_half_edge(from + i) as usize][0]);
+        if !normals.is_empty() {
+            fill(&mut out.normals[part], |i| {
                 let mut sum = [0.0; 3];
-                c.turn(v, |h| (0..3).for_each(|k| sum[k] += kept.normals[h as usize][0][k]));
-                out.normals[v as usize] = crate::refined::unit(sum);
-            }
+                c.turn(from + i, |h| (0..3).for_each(|k| sum[k] += normals[h as usize][0][k]));
+                crate::refined::unit(sum)
+            });
         }
     }
 
@@ -344,4 +344,16 @@ impl Patches {
             }
         }
     }
+}
+
+/// Fills a part of a buffer; threads share what is long.
+#[inline(always)]
+fn fill(out: &mut [Point], point: impl Fn(u32) -> Point + Sync) {
+    #[cfg(feature = "parallel")]
+    if out.len() >= MANY / 4 {
+        use rayon::prelude::*;
+        let all = out.par_iter_mut().with_min_len(MANY / 16).enumerate();
+        return all.for_each(|(i, out)| *out = point(i as u32));
+    }
+    (0..).zip(out).for_each(|(i, out)| *out = point(i));
 }
