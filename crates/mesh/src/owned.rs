@@ -49,6 +49,18 @@ impl Owned {
         }
     }
 
+    /// Gives up what listing the faces that `split` makes does not read: where these are only shown, nothing else will.
+    pub(crate) fn shed(&mut self, split: Split) {
+        match (self, split) {
+            _ if !FULL => {}
+            (Owned::Stored(t), Split::Dual { .. }) => (t.origin, t.edge) = Default::default(),
+            (Owned::Stored(t), Split::Sqrt3 { .. }) => (t.edge, t.edge_half_edge) = Default::default(),
+            #[cfg(feature = "full")]
+            (Owned::Dual(d), Split::Dual { .. }) => d.shed_origins(),
+            _ => {}
+        }
+    }
+
     /// The same level as the next step wants it held.
     pub(crate) fn stored_for(self, next: Option<&Step>) -> Owned {
         match self {

@@ -212,7 +212,12 @@ impl Track {
     pub(crate) fn step(&mut self, mesh: &Mesh, plan: &Plan, steps: &[Step], quota: &mut usize) {
         let base = self.base(mesh);
         while *quota > 0 && self.stage != Stage::Done {
-            let held = self.half_edges.take();
+            let mut held = self.half_edges.take();
+            if FULL && self.only_lists(plan) {
+                // The most memory is held now: the faces of the last level come to what has made its points.
+                self.points = None;
+                held.iter_mut().for_each(|held| held.shed(steps[self.level as usize].split));
+            }
             let level = held.as_ref().map_or(Level::Base(base), Owned::view);
             let next = self.work(&level, mesh, plan, steps, quota);
             match next {
@@ -243,6 +248,11 @@ impl Track {
         if self.stage == Stage::Done {
             (self.half_edges, self.beside) = (None, None);
         }
+    }
+
+    /// Whether nothing is left to be done but to list the last level's faces.
+    fn only_lists(&self, plan: &Plan) -> bool {
+        self.stage == Stage::Corners(0) && !self.uv && !plan.closes() && self.creases.is_none()
     }
 
     /// Works on a level; gives the half-edges of the next when it has come to that.

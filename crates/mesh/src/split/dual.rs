@@ -110,15 +110,22 @@ impl DualLevel {
     /// The faces below such a level, for a level that is only shown.
     pub(crate) fn cut(c: &impl Connectivity) -> Cut {
         let (faces, edges, vertices) = (c.faces(), c.edges(), c.vertices());
-        let mut cut = Cut::with_room((faces + edges + vertices) as usize, 0, true);
-        corners(c, &mut cut.corners);
-        cut.offsets.extend((1..faces).map(|f| c.face_half_edges(f).start));
+        let mut cut = Cut { source: parents(c), ..Cut::default() };
+        let all = cut.source.len();
+        cut.kinds.reserve_exact(all);
+        cut.offsets.reserve_exact(all + 1);
+        cut.offsets.extend((0..faces).map(|f| c.face_half_edges(f).start));
         cut.offsets.extend((0..=edges + vertices).map(|i| c.half_edges() + 4 * i));
-        cut.source = parents(c);
+        corners(c, &mut cut.corners);
         for (kind, count) in [(FaceKind::Face, faces), (FaceKind::Edge, edges), (FaceKind::Vertex, vertices)] {
             cut.kinds.resize(cut.kinds.len() + count as usize, kind);
         }
         cut
+    }
+
+    /// Gives up which vertices half-edges leave: the faces below ([`DualLevel::cut`]) follow from twins.
+    pub(crate) fn shed_origins(&mut self) {
+        self.origin = Vec::new();
     }
 
     /// Where quads begin.
@@ -147,7 +154,7 @@ impl Connectivity for DualLevel {
     }
     #[inline(always)]
     fn half_edges(&self) -> u32 {
-        self.origin.len() as u32
+        self.twin.len() as u32
     }
     #[inline(always)]
     fn boundary_half_edges(&self) -> u32 {
