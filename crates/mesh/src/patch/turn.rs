@@ -7,8 +7,8 @@
 //! ```
 //!
 //! That is a 24x8 matrix turned round (of vertex ids 8x8), square by square, by exchanges of halves, quarters and neighbours.
-//! Nothing is computed, so all ways give the same bits: in vectors of eight where the processor has them, and one by one
-//! elsewhere. Compilers do not find this themselves.
+//! Nothing is computed, so all ways give the same bits: in vectors of eight where the processor has them, of four on the web, and
+//! one by one elsewhere. Compilers do not find this themselves.
 //!
 //! Cost: about a shuffle a point; one by one three loads and three stores.
 
@@ -36,10 +36,19 @@ pub(super) trait Turn: Copy {
     /// Writes the ids that a run takes from patches.
     fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]);
 
-    /// Says that `count` values from `at` on will be written soon.
+    /// Fetches where `count` values from `at` on will be written soon. Without an instruction for that by reading: reads wait for memory
+    /// side by side, stores one after the other.
     #[inline(always)]
-    fn expect<T>(self, _out: &[T], _at: usize, _count: usize) {}
+    fn expect<T: bytemuck::Pod>(self, out: &[T], at: usize, count: usize) {
+        let words: &[u32] = bytemuck::cast_slice(&out[at..at + count]);
+        for line in words.chunks(LINE / size_of::<u32>()) {
+            std::hint::black_box(line[0]);
+        }
+    }
 }
+
+/// Bytes that a processor fetches at once.
+const LINE: usize = 64;
 
 /// One by one.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +81,7 @@ pub(super) use wide::Wide;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    use super::{Cell, Eight, LANES, Point, Run, Turn};
+    use super::{Cell, Eight, LANES, LINE, Point, Run, Turn};
     use std::arch::x86_64::*;
 
     /// Says that the processor has vectors of eight (AVX2).
@@ -100,16 +109,13 @@ mod wide {
         }
 
         #[inline(always)]
-        fn expect<T>(self, out: &[T], at: usize, count: usize) {
+        fn expect<T: bytemuck::Pod>(self, out: &[T], at: usize, count: usize) {
             for line in out[at..at + count].chunks(LINE / size_of::<T>()) {
                 // SAFETY: nothing is read; every processor of this kind has the instruction.
                 unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) };
             }
         }
     }
-
-    /// Bytes that a processor fetches at once.
-    const LINE: usize = 64;
 
     #[target_feature(enable = "avx2")]
     fn points(run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {
@@ -201,5 +207,107 @@ mod wide {
         if let Some(one) = one.first_mut() {
             *one = eight[per & 6];
         }
+    }
+}
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(super) use fours::Fours;
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod fours {
+    use super::{Cell, Eight, Plain, Point, Run, Turn};
+    use std::arch::wasm32::*;
+
+    /// In vectors of four, which is what the web has. Values go from one place to another without an array between, which would
+    /// be a call.
+    #[derive(Clone, Copy, Debug)]
+    pub(in super::super) struct Fours;
+
+    /// Values of a vector.
+    const FOUR: usize = 4;
+
+    impl Turn for Fours {
+        #[inline(always)]
+        fn points(self, run: &Run<'_>, cells: &[Cell], out: &mut [Point]) {
+            if run.per < FOUR {
+                return Plain.points(run, cells, out);
+            }
+            let out: &mut [u32] = bytemuck::cast_slice_mut(out);
+            for (from, [a, b, c, d]) in fours(run) {
+                let [a, b, c, d] =
+                    [a, b, c, d].map(|place| bytemuck::cast_ref::<_, [Eight; 3]>(&cells[usize::from(place)].0));
+                for (half, patches) in run.patches.chunks(FOUR).enumerate() {
+                    let at = |row: &Eight| load(row, half);
+                    let first = square([at(&a[0]), at(&a[1]), at(&a[2]), at(&b[0])]);
+                    let second = square([at(&b[1]), at(&b[2]), at(&c[0]), at(&c[1])]);
+                    let third = square([at(&c[2]), at(&d[0]), at(&d[1]), at(&d[2])]);
+                    for lane in 0..FOUR {
+                        let Some(&q) = patches.get(lane) else { break };
+                        let begin = 3 * ((q - run.first) as usize * run.per + from);
+                        let out = &mut out[begin..begin + 3 * FOUR];
+                        store(first[lane], out, 0);
+                        store(second[lane], out, 1);
+                        store(third[lane], out, 2);
+                    }
+                }
+            }
+        }
+
+        #[inline(always)]
+        fn ids(self, run: &Run<'_>, ids: &[Eight], out: &mut [u32]) {
+            if run.per < FOUR {
+                return Plain.ids(run, ids, out);
+            }
+            for (from, places) in fours(run) {
+                let [a, b, c, d] = places.map(|place| &ids[usize::from(place)]);
+                for (half, patches) in run.patches.chunks(FOUR).enumerate() {
+                    let turned = square([load(a, half), load(b, half), load(c, half), load(d, half)]);
+                    for lane in 0..FOUR {
+                        let Some(&q) = patches.get(lane) else { break };
+                        let begin = (q - run.first) as usize * run.per + from;
+                        store(turned[lane], &mut out[begin..begin + FOUR], 0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The places of a run, four by four, and where in the run these begin: the last four may have been in the four before.
+    #[inline(always)]
+    fn fours<'a>(run: &Run<'a>) -> impl Iterator<Item = (usize, [u16; FOUR])> + 'a {
+        let (places, per) = (run.places, run.per);
+        (0..per).step_by(FOUR).filter_map(move |from| {
+            let from = from.min(per - FOUR);
+            Some((from, *places[from..].first_chunk()?))
+        })
+    }
+
+    /// The first or second half of eight.
+    #[inline(always)]
+    fn load(row: &Eight, half: usize) -> v128 {
+        let four = &row[FOUR * half..FOUR * half + FOUR];
+        // SAFETY: four values are there; any alignment will do.
+        unsafe { v128_load(four.as_ptr().cast()) }
+    }
+
+    /// Writes four, so many vectors behind the begin of `out`.
+    #[inline(always)]
+    fn store(value: v128, out: &mut [u32], vectors: usize) {
+        let four = &mut out[FOUR * vectors..FOUR * vectors + FOUR];
+        // SAFETY: there is room for four values; any alignment will do.
+        unsafe { v128_store(four.as_mut_ptr().cast(), value) };
+    }
+
+    /// Column i of a square as its row i.
+    #[inline(always)]
+    fn square([a, b, c, d]: [v128; FOUR]) -> [v128; FOUR] {
+        let (low, high) = (u32x4_shuffle::<0, 4, 1, 5>(a, b), u32x4_shuffle::<2, 6, 3, 7>(a, b));
+        let (low_of_two, high_of_two) = (u32x4_shuffle::<0, 4, 1, 5>(c, d), u32x4_shuffle::<2, 6, 3, 7>(c, d));
+        [
+            u64x2_shuffle::<0, 2>(low, low_of_two),
+            u64x2_shuffle::<1, 3>(low, low_of_two),
+            u64x2_shuffle::<0, 2>(high, high_of_two),
+            u64x2_shuffle::<1, 3>(high, high_of_two),
+        ]
     }
 }

@@ -14,7 +14,7 @@ use super::class::{Classes, Tabled};
 use super::grid::{self, Cell, LANES, Rows, Spline, cell, lanes};
 use super::layout::{Layout, Run};
 use super::ring::Ring;
-use super::turn::{self, Eight, Plain, Turn};
+use super::turn::{self, Eight, Turn};
 use super::{Anchor, Kept, Out, Point};
 use crate::plan::Step;
 use crate::scheme::{Reach, Rules, Tags};
@@ -188,7 +188,10 @@ impl Worker {
             // SAFETY: the processor has what the function is compiled for.
             return unsafe { self.run_wide(layout, start, patches, finish, (target, wide)) };
         }
-        self.run_here(layout, start, patches, finish, (target, Plain))
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        return self.run_here(layout, start, patches, finish, (target, turn::Fours));
+        #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+        self.run_here(layout, start, patches, finish, (target, turn::Plain))
     }
 
     /// The same statements, compiled for vectors of eight: the same bits, for lanes do not meet.
