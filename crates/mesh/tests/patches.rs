@@ -108,6 +108,38 @@ fn creases_agree() {
     assert!(patched >= 6, "only {patched} of 12 went by patches");
 }
 
+/// Colours go by the same rules as points, alpha with them.
+#[test]
+fn colours_agree() {
+    for (name, id) in [("creature", "catmull-clark"), ("grid", "catmull-clark"), ("pawn", "loop"), ("grid", "linear")] {
+        for clear in [false, true] {
+            let mut soup = (shape(name).unwrap().build)();
+            let color = |i: usize| {
+                [i as f32 % 7.0 / 7.0, i as f32 % 5.0 / 5.0, 0.25, if clear { i as f32 % 3.0 / 3.0 } else { 0.8 }]
+            };
+            soup.colors = (0..soup.positions.len()).map(color).collect();
+            if id == "loop" {
+                soup = triangulate_soup(&soup).0;
+            }
+            let plan = Plan::new(scheme(id).unwrap(), Boundary::default(), 4);
+            let job = || Job::new(build(&soup), plan.clone(), u64::MAX).unwrap().shaded();
+            let (fast, general) = (job().finish(), job().level_by_level().finish());
+            assert!(fast.known_normals.is_some(), "{name}, {id} went level by level");
+            assert_eq!(fast.colors.len(), general.colors.len());
+            for (v, (a, b)) in fast.colors.iter().zip(&general.colors).enumerate() {
+                assert!((0..4).all(|k| (a[k] - b[k]).abs() <= 1e-6), "{name}, {id}: vertex {v} is {a:?}, not {b:?}");
+            }
+            let mut sliced = job();
+            while !sliced.step(997) {}
+            let sliced = sliced.finish();
+            assert_eq!((&fast.points, &fast.colors), (&sliced.points, &sliced.colors), "{name}, {id}");
+            soup.colors.clear();
+            let plain = Job::new(build(&soup), plan.clone(), u64::MAX).unwrap().finish();
+            assert_eq!((&fast.points, &fast.faces), (&plain.points, &plain.faces), "{name}, {id}");
+        }
+    }
+}
+
 /// Slices of any length make the same bits, and (in a build that shares large work among threads) so do threads.
 #[test]
 fn slices_make_the_same() {

@@ -61,7 +61,8 @@ impl Drag {
     pub fn new(mesh: Arc<Mesh>, plan: &Plan, budget: u64) -> Result<Option<Drag>, RefineError> {
         let steps = admit(&mesh, plan, budget)?;
         let (Some(1), Some(&step)) = (super::start(&mesh, plan, &steps), steps.first()) else { return Ok(None) };
-        if step.split != steps[1].split || step.stored {
+        // Colours are not held here.
+        if step.split != steps[1].split || step.stored || !mesh.colors.is_empty() {
             return Ok(None);
         }
         let base = Level::Base(&mesh.topology);

@@ -62,9 +62,9 @@ type Point = [f32; 3];
 /// The level that patches start at, if the last steps of a plan can be taken at once.
 pub(crate) fn start(mesh: &Mesh, plan: &Plan, steps: &[Step]) -> Option<u32> {
     let last = steps.last()?;
-    // What carries colours, ties copies or leaves faces out goes level by level.
+    // What ties copies or leaves faces out goes level by level.
     let all_shown = mesh.holes.is_empty() && (plan.rules.boundary != Boundary::None || mesh.counts().boundary == 0);
-    let plain = mesh.colors.is_empty() && mesh.tied.is_empty() && all_shown;
+    let plain = mesh.tied.is_empty() && all_shown;
     if last.scheme.reach == Reach::Far || plan.closes() || !plain {
         return None;
     }
@@ -196,6 +196,14 @@ impl Patches {
         }
         self.boundary(c, out, |_| ());
         Progress::Done
+    }
+
+    /// Begins anew with other values of the same vertices, three channels of which no normals are wanted: all tables are there.
+    pub(crate) fn restart(&mut self) {
+        self.shares.iter_mut().for_each(|(_, taken)| *taken = 0);
+        self.workers.iter_mut().for_each(Worker::forget_rims);
+        self.kept.normals = Vec::new();
+        self.next = 0;
     }
 
     /// Evaluates some patches of a level that is there again, by rising numbers, and appends the ids that they and their

@@ -1,8 +1,9 @@
 //! The stage of a track that makes the last level of patches, and what becomes of it where they do not fit.
 //!
 //! ```text
-//!   Patches ── done ──> the last level, corners and normals with it
-//!           └─ unfit ─> Points of this level; patches are tried again at the next
+//!   Patches ── done ──> the last level, corners and normals with it       colours: once more, as points of red, green, blue,
+//!           └─ unfit ─> Points of this level; patches are tried again     and again of alpha unless it is the same everywhere
+//!                       at the next
 //! ```
 
 use super::{Stage, Track, zeroed};
@@ -28,6 +29,16 @@ pub(crate) struct Patched {
     listed: bool,
     /// Points of a level that is not needed any more: a buffer to be filled, once the levels before are made.
     spare: Vec<[f32; 3]>,
+    channels: Channels,
+}
+
+/// Three channels of colours that are evaluated as points are.
+#[derive(Debug, Default)]
+struct Channels {
+    /// How many times patches were worked off: for points, then for these.
+    turn: u32,
+    old: Vec<[f32; 3]>,
+    new: Vec<[f32; 3]>,
 }
 
 impl Track {
@@ -65,6 +76,11 @@ impl Track {
             self.new_points = std::mem::take(&mut self.patched.spare);
         }
         let progress = match &mut self.patched.patches {
+            Some(patches) if self.patched.channels.turn > 0 => {
+                let Channels { old, new, .. } = &mut self.patched.channels;
+                let out = &mut patch::Out { points: new, normals: &mut [], corners: &mut [] };
+                patches.work(level, &tags, old, out, quota)
+            }
             Some(patches) => {
                 let [counts, _] = patches.counts();
                 fit(&mut self.new_points, counts.vertices as usize);
@@ -78,7 +94,12 @@ impl Track {
             None => patch::Progress::Unfit,
         };
         match (progress, self.patched.patches.take()) {
-            (patch::Progress::Done, Some(patches)) => {
+            (patch::Progress::Done, Some(mut patches)) => {
+                if self.paint(patches.counts()[0].vertices as usize) {
+                    patches.restart();
+                    self.patched.patches = Some(patches);
+                    return None;
+                }
                 self.level = plan.level;
                 [self.counts, self.before] = patches.counts();
                 self.points = Some(std::mem::take(&mut self.new_points));
@@ -89,11 +110,41 @@ impl Track {
                 // Marks fade, and rings become alike: perhaps from the next level on.
                 self.patched.from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
                 (self.new_points, self.patched.normals, self.corners) = Default::default();
-                self.patched.listed = false;
+                (self.patched.listed, self.patched.channels) = Default::default();
                 self.stage = Stage::Points(Cursor::default());
             }
         }
         None
+    }
+}
+
+impl Track {
+    /// Takes the channels that patches have made, if any, into the colours of `vertices`, and lists the next; false when all are there.
+    fn paint(&mut self, vertices: usize) -> bool {
+        let Some(alpha) = self.wide.first().map(|color| color[3]) else { return false };
+        let Channels { turn, old, new } = &mut self.patched.channels;
+        *turn += 1;
+        let more = match turn {
+            1 => {
+                *old = self.wide.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+                *new = bytemuck::zeroed_vec(vertices);
+                true
+            }
+            2 => {
+                self.new_wide = new.iter().map(|&[r, g, b]| [r, g, b, alpha]).collect();
+                *old = self.wide.iter().map(|color| [color[3], 0.0, 0.0]).collect();
+                self.wide.iter().any(|color| color[3] != alpha)
+            }
+            _ => {
+                self.new_wide.iter_mut().zip(new).for_each(|(color, made)| color[3] = made[0]);
+                false
+            }
+        };
+        if !more {
+            self.wide = std::mem::take(&mut self.new_wide);
+            self.patched.channels = Channels::default();
+        }
+        more
     }
 }
 
