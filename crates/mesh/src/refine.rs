@@ -275,6 +275,7 @@ impl Job {
     #[cfg(feature = "full")]
     pub fn level_by_level(mut self) -> Job {
         self.geometry.no_patches();
+        self.uv.no_patches();
         self
     }
 

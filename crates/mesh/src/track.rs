@@ -158,6 +158,11 @@ impl Track {
                 track.patched.from = patch::start(mesh, plan, steps);
             }
         }
+        // What is pinned on the way is not known to patches.
+        #[cfg(feature = "full")]
+        if uv && !idle && !track.charted && !track.listed && plan.rules.face_varying != FaceVarying::Boundaries {
+            track.patched.from = patch::start(mesh, plan, steps);
+        }
         if !idle {
             track.creases = Creases::of(mesh, track.base(mesh), plan.rules.face_varying);
             if FULL && track.charted {
@@ -179,7 +184,7 @@ impl Track {
             face_varying::pin_boundary(level, &self.loose, &mut self.pins);
         }
         self.stage = match step {
-            Some(_) if self.uv => Stage::Wide(Cursor::default()),
+            Some(_) if self.uv => self.first_stage(),
             _ if self.uv => Stage::Done,
             _ if FULL && plan.fairing(self.level).is_some() => Stage::Fair(0, Cursor::default()),
             Some(_) => self.first_stage(),
@@ -193,7 +198,7 @@ impl Track {
         if self.patched.from == Some(self.level) {
             return Stage::Patches;
         }
-        Stage::Points(Cursor::default())
+        if self.uv { Stage::Wide(Cursor::default()) } else { Stage::Points(Cursor::default()) }
     }
 
     /// What is left to be done with the last level.

@@ -140,6 +140,48 @@ fn colours_agree() {
     }
 }
 
+/// So do texture coordinates, on half-edges of their own.
+#[test]
+fn texture_coordinates_agree() {
+    use FaceVarying::*;
+    for (name, id) in
+        [("creature", "catmull-clark"), ("grid", "catmull-clark"), ("pawn", "loop"), ("cube", "catmull-clark")]
+    {
+        let mut soup = (shape(name).unwrap().build)();
+        if id == "loop" {
+            soup = triangulate_soup(&soup).0;
+        }
+        // Every eighth face has a chart of its own.
+        let (mut uvs, mut corners) = (soup.positions.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>(), Vec::new());
+        for f in 0..soup.face_count() {
+            for &v in soup.face(f) {
+                let [x, y, z] = soup.positions[v as usize];
+                uvs.push([x + 10.0, y + z]);
+                corners.push(if f % 8 == 0 { uvs.len() as u32 - 1 } else { v });
+            }
+        }
+        (soup.uvs, soup.uv_corners) = (uvs, corners);
+        for face_varying in [None, CornersOnly, CornersPlus1, CornersPlus2, Boundaries, All] {
+            let mut plan = Plan::new(scheme(id).unwrap(), Boundary::default(), 4);
+            plan.rules.face_varying = face_varying;
+            let job = || Job::new(build(&soup), plan.clone(), u64::MAX).unwrap();
+            let what = format!("{name}, {id}, {face_varying:?}");
+            let (fast, general) = (job().finish().uv.unwrap(), job().level_by_level().finish().uv.unwrap());
+            assert_eq!(fast.corners, general.corners, "{what}");
+            assert_eq!(fast.values.len(), general.values.len(), "{what}");
+            for (v, (a, b)) in fast.values.iter().zip(&general.values).enumerate() {
+                assert!((0..2).all(|k| (a[k] - b[k]).abs() <= 1e-5), "{what}: value {v} is {a:?}, not {b:?}");
+            }
+            // Sums in f32 and in f64 differ somewhere, but those of halves.
+            let same = fast.values == general.values;
+            assert!(same == (face_varying == Boundaries) || face_varying == All, "{what}: how it was made");
+            let mut sliced = job();
+            while !sliced.step(997) {}
+            assert_eq!(Some(fast), sliced.finish().uv, "{what}");
+        }
+    }
+}
+
 /// Slices of any length make the same bits, and (in a build that shares large work among threads) so do threads.
 #[test]
 fn slices_make_the_same() {

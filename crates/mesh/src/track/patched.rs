@@ -5,15 +5,17 @@
 //!           └─ unfit ─> Points of this level; patches are tried again     and again of alpha unless it is the same everywhere
 //!                       at the next
 //! ```
+//!
+//! Texture coordinates are such colours on half-edges of their own, with corners of their own.
 
-use super::{Stage, Track, zeroed};
+use super::{Track, zeroed};
 use crate::mesh::Mesh;
 use crate::owned::Owned;
 use crate::patch::{self, Patches};
 use crate::plan::{Plan, Step};
-use crate::refine::sharp_at;
+use crate::refine::{Kept, sharp_at};
 use crate::refined::{Faces, Refined};
-use crate::sink::Cursor;
+use crate::scheme::{Boundary, FaceVarying, Rules, Tags, scheme};
 use crate::split::Level;
 
 /// What a track has of patches.
@@ -69,16 +71,30 @@ impl Track {
         quota: &mut usize,
     ) -> Option<Option<Owned>> {
         let step = steps.get(self.level as usize)?;
-        let sharp = sharp_at(steps, self.level, mesh, &self.corner);
-        let tags = plan.tags(step, self.level, sharp, self.creases.as_ref());
+        let all_linear = self.uv && plan.rules.face_varying == FaceVarying::All;
+        let linear = scheme("linear").filter(|_| all_linear);
+        let step = &Step { scheme: linear.unwrap_or(step.scheme), ..*step };
         if self.patched.patches.is_none() {
             self.patched.patches = Patches::new(*step, plan.rules, plan.level - self.level, self.counts).map(Box::new);
             self.new_points = std::mem::take(&mut self.patched.spare);
+            if let (Some(patches), true) = (&self.patched.patches, self.uv) {
+                let [counts, _] = patches.counts();
+                self.paint(counts.vertices as usize);
+                fit(&mut self.corners, counts.corners as usize);
+            }
         }
+        let (sharp, boundary) = match self.uv {
+            // Corners are among the pins, and no others.
+            true => (Kept { sharp: &self.pins, joined: &[] }, Boundary::EdgeOnly),
+            false => (sharp_at(steps, self.level, mesh, &self.corner), plan.rules.boundary),
+        };
+        let tags = plan.tags(step, self.level, sharp, self.creases.as_ref());
+        let tags = Tags { rules: Rules { boundary, ..tags.rules }, ..tags };
         let progress = match &mut self.patched.patches {
             Some(patches) if self.patched.channels.turn > 0 => {
                 let Channels { old, new, .. } = &mut self.patched.channels;
-                let out = &mut patch::Out { points: new, normals: &mut [], corners: &mut [] };
+                let corners = if self.uv { &mut self.corners[..] } else { &mut [] };
+                let out = &mut patch::Out { points: new, normals: &mut [], corners };
                 patches.work(level, &tags, old, out, quota)
             }
             Some(patches) => {
@@ -102,7 +118,9 @@ impl Track {
                 }
                 self.level = plan.level;
                 [self.counts, self.before] = patches.counts();
-                self.points = Some(std::mem::take(&mut self.new_points));
+                if !self.uv {
+                    self.points = Some(std::mem::take(&mut self.new_points));
+                }
                 return Some(None);
             }
             (patch::Progress::More, patches) => self.patched.patches = patches,
@@ -111,7 +129,7 @@ impl Track {
                 self.patched.from = Some(self.level + 1).filter(|from| from + 2 <= plan.level);
                 (self.new_points, self.patched.normals, self.corners) = Default::default();
                 (self.patched.listed, self.patched.channels) = Default::default();
-                self.stage = Stage::Points(Cursor::default());
+                self.stage = self.first_stage();
             }
         }
         None
@@ -119,7 +137,8 @@ impl Track {
 }
 
 impl Track {
-    /// Takes the channels that patches have made, if any, into the colours of `vertices`, and lists the next; false when all are there.
+    /// Takes the channels that patches have made, if any, into the colours or texture coordinates of `vertices`, and lists the next;
+    /// false when all are there.
     fn paint(&mut self, vertices: usize) -> bool {
         let Some(alpha) = self.wide.first().map(|color| color[3]) else { return false };
         let Channels { turn, old, new } = &mut self.patched.channels;
