@@ -6,7 +6,8 @@
 //!
 //! Half-edges are built for every level but the last, which is only shown: its corners come straight from its parent's.
 //! Positions run through the fast sink; colours and texture coordinates through recorded rows in f64 (texture coordinates
-//! on half-edges of their own, see [`crate::mesh::UvChannel`]). [`evaluate`] is the slow twin: any number of f64 channels.
+//! on half-edges of their own, see [`crate::mesh::UvChannel`]). Where patches make the last levels all of them are points to
+//! these (`patch/`). [`evaluate`] is the slow twin: any number of f64 channels.
 //!
 //! Cost: about 20 ns an output quad, 12 a triangle, a third of it in the levels before the last. Memory: [`Prediction`].
 //! Limit: 2^31 - 1 corners in the last level, whatever the budget.
