@@ -70,7 +70,7 @@ pub use fairing::Fairing;
 pub use limit::{Limit, LimitRule, limit};
 pub use mesh::{Mesh, Stats, TopologyError};
 #[cfg(feature = "full")]
-pub use patch::{Drag, Moved};
+pub use patch::{Drag, Moved, PatchRing, PatchTable, PatchTables};
 pub use plan::{Plan, Run};
 pub use refine::{Job, Prediction, RefineError, grouped, memory, predict, refine};
 pub use refined::{Faces, Refined, UvValues};

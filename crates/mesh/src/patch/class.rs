@@ -93,11 +93,16 @@ const INSIDE: u16 = u16::MAX;
 /// must not depend on who met which.
 #[derive(Debug, Default)]
 pub(super) struct Tabled {
-    pub most: usize,
+    most: usize,
     met: Mutex<BTreeMap<Vec<u32>, Option<Arc<Table>>>>,
 }
 
 impl Tabled {
+    /// For a level of so many patches.
+    pub(super) fn of(patches: u32) -> Tabled {
+        Tabled { most: 24 + patches as usize / 16, met: Mutex::default() }
+    }
+
     /// The table of the class with this key; inside none if it has to be made, none if it is one too many.
     fn ask(&self, key: &[u32]) -> Option<Option<Arc<Table>>> {
         let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);

@@ -158,6 +158,13 @@ impl Spline {
         Spline { columns, beyond }
     }
 
+    /// The four weights at every position along a span, from the point before it to the one behind it.
+    pub(super) fn along(&self) -> Vec<[f32; 4]> {
+        let [a, b, c, d] = &self.columns;
+        let inside = a.iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| [*a, *b, *c, *d]);
+        [self.beyond[0]].into_iter().chain(inside).chain([self.beyond[1]]).collect()
+    }
+
     /// The grids of regular quad patches, and their strips if they are `shaded`: `controls` as [`super::ring::Ring`] lists them.
     #[inline(always)]
     pub(super) fn evaluate(&self, m: usize, controls: &[Cell], shaded: bool, rows: &mut Vec<Cell>, out: &mut [Cell]) {

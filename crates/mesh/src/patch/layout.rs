@@ -185,7 +185,7 @@ impl Layout {
     }
 
     /// The places of the points of a run.
-    fn places_of(&self, run: &Run) -> &[u16] {
+    pub(super) fn places_of(&self, run: &Run) -> &[u16] {
         &self.places[run.first..run.first + run.per as usize]
     }
 
@@ -251,6 +251,11 @@ impl Layout {
         let (across, other) =
             if is_boundary(twin) { (sides, boundary_rank(twin)) } else { (twin % sides, twin / sides) };
         (&self.seams[(h % sides * (sides + 1) + across) as usize], other)
+    }
+
+    /// The seam of a side on a boundary.
+    pub(super) fn rim(&self, side: usize) -> &Seam {
+        &self.seams[side * (self.sides + 1) + self.sides]
     }
 
     fn list_faces(&mut self, mut families: Vec<Family>) {

@@ -32,6 +32,7 @@ mod drag;
 mod grid;
 mod layout;
 mod ring;
+mod tables;
 mod turn;
 mod worker;
 
@@ -45,6 +46,7 @@ pub use drag::{Drag, Moved};
 use grid::MOST_STEPS;
 use layout::{Layout, Run};
 use std::ops::Range;
+pub use tables::{PatchRing, PatchTable, PatchTables};
 use worker::{Target, Worker};
 
 /// How deep a patch is cut at most: deeper ones would leave the caches.
@@ -264,7 +266,7 @@ impl Patches {
         let n = 1;
         let at = |i: u64| (u64::from(patches) * i / n) as u32;
         self.shares = (0..n).map(|i| (at(i)..at(i + 1), 0)).collect();
-        self.tabled.most = 24 + patches as usize / 16;
+        self.tabled = Tabled::of(patches);
         self.workers.push(Worker::new(self.step, self.rules, &self.layout));
     }
 
