@@ -12,7 +12,7 @@
 
 use super::cage::Size;
 use super::finish::Drawn;
-use super::kernels::{Kernel, Level, Split, Variant};
+use super::kernels::{Finish, Kernel, Level, Split, Variant};
 use super::program::{Builder, Dispatch, Id, Limits, Program, Role};
 use super::{Cage, Error, Rules, Scheme, Values, colors};
 
@@ -53,7 +53,7 @@ impl Scheme {
 }
 
 /// The numbers of level `k`, whose size and the one before are given.
-fn level(rules: &Rules, marked: u32, k: u32, size: Size, before: Size) -> Level {
+pub(crate) fn level(rules: &Rules, marked: u32, k: u32, size: Size, before: Size) -> Level {
     let split = rules.scheme.split();
     let [a, b] = rules.scheme.numbers();
     let [vertices, faces, half_edges] = [size.vertices, size.faces, size.half_edges].map(|n| n as u32);
@@ -140,14 +140,16 @@ pub(crate) fn beside(
 
 /// The levels of some values, and what is known of the last but one.
 pub(crate) struct Chain {
-    split: Split,
+    pub split: Split,
     /// Whether the last but one is level 0.
-    base: bool,
-    read: [Id; 5],
-    numbers: Level,
-    next: Size,
-    values: Id,
-    count: u32,
+    pub base: bool,
+    pub read: [Id; 5],
+    pub numbers: Level,
+    pub next: Size,
+    pub values: Id,
+    pub count: u32,
+    /// Where patches made the values: how many vertices the level has that they start at. The half-edges are that level's.
+    pub climbs: Option<u32>,
 }
 
 impl Chain {
@@ -157,6 +159,18 @@ impl Chain {
         (cage, values): (&Cage<'_>, Id),
         rules: &Rules,
         to: u32,
+        role: Role,
+        lists: (&mut Vec<Dispatch>, &mut Vec<Dispatch>),
+    ) -> Result<Chain, Error> {
+        Chain::walk(builder, (cage, values), rules, (to, false), role, lists)
+    }
+
+    /// The same, and with `further` the half-edges of the last level as well, from which others go on.
+    pub(crate) fn walk(
+        builder: &mut Builder,
+        (cage, values): (&Cage<'_>, Id),
+        rules: &Rules,
+        (to, further): (u32, bool),
         role: Role,
         (once, each): (&mut Vec<Dispatch>, &mut Vec<Dispatch>),
     ) -> Result<Chain, Error> {
@@ -224,9 +238,9 @@ impl Chain {
             let kernel = Kernel::Points(variant(scheme.number(), creased));
             each.extend(builder.step(kernel, &all, &read, &[points, new]));
             points = new;
-            if k + 1 == to {
+            if k + 1 == to && !further {
                 let (base, count) = (variant(0, false).base, next.vertices as u32);
-                return Ok(Chain { split, base, read, numbers, next, values: points, count });
+                return Ok(Chain { split, base, read, numbers, next, values: points, count, climbs: None });
             }
             let tables = if split == Split::Dual { 2 * next.half_edges + next.faces + 1 } else { 0 };
             let child = HalfEdges {
@@ -243,24 +257,33 @@ impl Chain {
             once.extend(builder.step(Kernel::Split(variant(0, creased)), &all, &read, &made));
             held = child;
         }
-        Err(Error::Mismatch { what: "levels", found: 0, expected: 1 })
+        let before = sizes.iter().rev().nth(1).copied().unwrap_or_default();
+        let read = [held.half_edges, held.starts, marks, held.sharpness.unwrap_or(nothing), angles];
+        let (numbers, count) = (level(rules, marked, to, last, before), last.vertices as u32);
+        let next = last.split(split);
+        Ok(Chain { split, base: false, read, numbers, next, values: points, count, climbs: None })
     }
 }
 
 /// The end of a program: normals, faces, what corners carry, the box.
-fn drawn(
+pub(crate) fn drawn(
     mut builder: Builder,
     (cage, cage_vertices): (Id, u32),
     chain: &Chain,
     extras: [Option<Chain>; 2],
     (mut once, mut each): (Vec<Dispatch>, Vec<Dispatch>),
 ) -> Result<Program, Error> {
-    let &Chain { split, base, read, numbers, next, values: points, count } = chain;
+    let &Chain { split, base, read, numbers, next, values: points, count, climbs } = chain;
     let variant = Variant { split, base, creased: false, scheme: 0 };
+    let finish = |what: Finish| if climbs.is_some() { Kernel::Climbing(what, variant) } else { what.kernel(variant) };
     // The dual split's children are of half-edges.
     let elements = if split == Split::Dual { numbers.half_edges } else { numbers.faces + numbers.vertices };
     let all = Level { end: elements, ..numbers };
-    each.extend(builder.step(Kernel::Normals(variant), &all, &read, &[points]));
+    let bare = match climbs {
+        Some(vertices) => Level { first: numbers.faces, end: numbers.faces + vertices, ..numbers },
+        None => all,
+    };
+    each.extend(builder.step(finish(Finish::Normals), &bare, &read, &[points]));
     let carries = extras.each_ref().map(Option::is_some);
     let corners = split != Split::Quad || carries.contains(&true);
     // Triangles: of the dual split those of its polygons, two a quad.
@@ -274,8 +297,8 @@ fn drawn(
     for piece in drawn.pieces() {
         let range = &piece.faces;
         let (kernel, share) = match split {
-            Split::Quad if corners => (Kernel::QuadCorners(variant), 2),
-            _ => (Kernel::Faces(variant), 1),
+            Split::Quad if corners => (finish(Finish::QuadCorners), 2),
+            _ => (finish(Finish::Faces), 1),
         };
         let mine = |numbers: Level| Level { first: range.start / share, end: range.end / share, ..numbers };
         let of_piece = match split {

@@ -6,6 +6,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::patch::Team;
 use crate::wgsl::wgsl;
 
 /// Invocations a workgroup, as the shaders have it.
@@ -94,6 +95,29 @@ pub(crate) enum Kernel {
     Colors,
     /// The box of the points.
     Bounds,
+    /// Points and normals of the last levels at once, of patches that are cut so often.
+    Patches(Variant, u32),
+    /// Normals, faces or corners of quads where the half-edges of the last level but one are not there.
+    Climbing(Finish, Variant),
+}
+
+/// What can be made by climbing to half-edges that are there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Finish {
+    Normals,
+    Faces,
+    QuadCorners,
+}
+
+impl Finish {
+    /// The same where half-edges are there.
+    pub fn kernel(self, variant: Variant) -> Kernel {
+        match self {
+            Finish::Normals => Kernel::Normals(variant),
+            Finish::Faces => Kernel::Faces(variant),
+            Finish::QuadCorners => Kernel::QuadCorners(variant),
+        }
+    }
 }
 
 /// How a buffer is bound.
@@ -141,6 +165,13 @@ impl Kernel {
             if !creased && split == Split::Quad {
                 all.push(Kernel::QuadCorners(variant(0)));
             }
+            if bits == 0 && matches!(split, Split::Quad | Split::Triangle) {
+                all.extend((2..=5).map(|depth| Kernel::Patches(variant(0), depth)));
+                all.extend([Finish::Normals, Finish::Faces].map(|what| Kernel::Climbing(what, variant(0))));
+            }
+            if bits == 0 && split == Split::Quad {
+                all.push(Kernel::Climbing(Finish::QuadCorners, variant(0)));
+            }
         }
         all
     }
@@ -157,6 +188,16 @@ impl Kernel {
             Kernel::Extras(_) => "extras",
             Kernel::Bounds => "bounds",
             Kernel::Faces(_) | Kernel::ListedFaces => "faces",
+            Kernel::Patches(..) => "patches",
+            Kernel::Climbing(what, variant) => what.kernel(variant).entry(),
+        }
+    }
+
+    /// Elements that a workgroup takes on.
+    pub fn group(self) -> u32 {
+        match self {
+            Kernel::Patches(variant, depth) => Team::new(variant.split, depth).teams,
+            _ => GROUP,
         }
     }
 
@@ -175,7 +216,7 @@ impl Kernel {
             }
             Kernel::Bounds => return format!("{work}{}", wgsl!("shaders/bounds.wgsl")),
             Kernel::Points(v) | Kernel::Split(v) | Kernel::Normals(v) | Kernel::Faces(v) => v,
-            Kernel::QuadCorners(v) | Kernel::Extras(v) => v,
+            Kernel::QuadCorners(v) | Kernel::Extras(v) | Kernel::Patches(v, _) | Kernel::Climbing(_, v) => v,
         };
         let Variant { split, base, creased, scheme } = variant;
         let sides = match (split, base) {
@@ -184,8 +225,12 @@ impl Kernel {
             (Split::Quad, false) => 4,
         };
         let tables = base || split == Split::Dual;
+        let held = match self {
+            Kernel::Climbing(..) => wgsl!("shaders/climb.wgsl"),
+            _ => wgsl!("shaders/stored.wgsl"),
+        };
         let head = format!(
-            "const SIDES = {sides}u;\nconst BASE = {tables};\nconst FIRST = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}",
+            "const SIDES = {sides}u;\nconst BASE = {tables};\nconst FIRST = {base};\nconst CREASED = {creased};\nconst SCHEME = {scheme}u;\n{work}{}{held}",
             wgsl!("shaders/level.wgsl")
         );
         let creases = wgsl!("shaders/creases.wgsl");
@@ -196,6 +241,9 @@ impl Kernel {
             (Kernel::Points(_), Split::Triangle) => head + creases + wgsl!("shaders/triangles.wgsl"),
             (Kernel::Points(_), Split::Sqrt3) => head + wgsl!("shaders/sqrt3.wgsl"),
             (Kernel::Points(_), Split::Dual) => head + wgsl!("shaders/dual.wgsl"),
+            (Kernel::Patches(_, depth), _) => {
+                Team::new(split, depth).constants() + &head + pack + wgsl!("shaders/patches.wgsl")
+            }
             (Kernel::Extras(_), _) => {
                 let quads = split == Split::Quad;
                 let [srgb, extras] = [wgsl!("shaders/srgb.wgsl"), wgsl!("shaders/extras.wgsl")];
@@ -225,6 +273,8 @@ impl Kernel {
             Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
             Kernel::Colors | Kernel::Bounds => [&[Uniform], &[Read, Write]],
+            Kernel::Patches(..) => [LEVEL, &[Read, Write]],
+            Kernel::Climbing(what, variant) => what.kernel(variant).access(),
             Kernel::ListedCorners => [&[Uniform, Read, Read, Read, Read, Read], &[Write, Write, Write]],
         }
     }

@@ -25,6 +25,7 @@ mod error;
 mod finish;
 mod fused;
 mod kernels;
+mod patch;
 mod plan;
 pub mod program;
 mod rows;
@@ -36,7 +37,8 @@ pub use error::Error;
 pub use finish::{Drawn, Piece};
 pub use fused::fused;
 pub use kernels::Access;
-pub use plan::{Tables, program, recorded, rules};
+pub use patch::patched;
+pub use plan::{Path, Tables, path, program, program_by, recorded, rules};
 pub use program::{Limits, Program, bounds};
 pub use rows::{EdgeFlags, Pass, RowLevel, Rows, rows};
 

@@ -11,10 +11,10 @@ use crate::fused::{Beside, beside};
 use crate::kernels::Split;
 use crate::program::{Limits, Program};
 use crate::rows::{Pass, RowLevel};
-use crate::{Cage, Error, Rules, Scheme, Values, fused};
+use crate::{Cage, Error, Rules, Scheme, Values, fused, patched};
 use limn_mesh::refine::{Recorded, RefineError, record};
 use limn_mesh::sink::Source;
-use limn_mesh::{Boundary, Connectivity, Decay, FaceVarying, Mesh, Plan, Topology, TriangleRule};
+use limn_mesh::{Boundary, Connectivity, Decay, FaceVarying, Mesh, PatchTables, Plan, Topology, TriangleRule};
 
 /// Level 0 in full.
 #[derive(Clone, Debug, Default)]
@@ -106,6 +106,20 @@ fn is_all_round(mesh: &Mesh) -> bool {
     t.boundary_half_edges() == 0 && (0..t.vertices()).all(|v| faces(v) >= 3)
 }
 
+/// How points are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// Every level from the one before: [`fused`].
+    Fused,
+    /// The last levels at once: [`patched`].
+    Patches,
+}
+
+/// The faster of both ways to a level that patches can make.
+pub fn path(_tables: &PatchTables) -> Path {
+    Path::Patches
+}
+
 /// The program of a plan that is shown as a whole: none where the CPU has to do it, because the scheme has no kernels of its own on
 /// such a mesh, or faces are hidden, or what goes with points does not go this way: texture coordinates with creases, by rules that keep
 /// seams straight, or of dual splits and the square root; parts of these, or scattered ones. `parts` are those of the file's
@@ -114,6 +128,20 @@ fn is_all_round(mesh: &Mesh) -> bool {
 /// # Errors
 /// As [`fused`].
 pub fn program(mesh: &Mesh, plan: &Plan, parts: &[u32], limits: Limits) -> Result<Option<Program>, Error> {
+    program_by(mesh, plan, parts, limits, None)
+}
+
+/// The same by a path that is not chosen; patches only where there are some, else levels.
+///
+/// # Errors
+/// As [`fused`].
+pub fn program_by(
+    mesh: &Mesh,
+    plan: &Plan,
+    parts: &[u32],
+    limits: Limits,
+    by: Option<Path>,
+) -> Result<Option<Program>, Error> {
     let whole = mesh.topology.boundary_half_edges() == 0 || plan.rules.boundary != Boundary::None;
     let Some(rules) = rules(mesh, plan).filter(|_| whole && mesh.holes.is_empty() && plan.level > 0) else {
         return Ok(None);
@@ -122,6 +150,11 @@ pub fn program(mesh: &Mesh, plan: &Plan, parts: &[u32], limits: Limits) -> Resul
     let cage = tables.cage(mesh);
     let split = rules.scheme.split();
     if mesh.colors.is_empty() && mesh.uv.is_none() && parts.is_empty() {
+        let tables = if by == Some(Path::Fused) { None } else { PatchTables::of(mesh, plan) };
+        let tables = tables.filter(|tables| by.unwrap_or_else(|| path(tables)) == Path::Patches);
+        if let Some(program) = tables.and_then(|tables| patched(&cage, &rules, &tables, limits).transpose()) {
+            return program.map(Some);
+        }
         return fused(&cage, &rules, plan.level, Values::Points, limits).map(Some);
     }
     let keeps_corners = matches!(split, Split::Quad | Split::Triangle);

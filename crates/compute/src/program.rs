@@ -178,7 +178,7 @@ impl Builder {
             // Each takes many elements.
             [elements.div_ceil(GROUP).min(256), 1]
         } else {
-            grid(elements, self.limits.groups)
+            grid(elements.div_ceil(kernel.group()), self.limits.groups)
         };
         if elements == 0 {
             return None;
@@ -206,9 +206,8 @@ impl Builder {
     }
 }
 
-/// The workgroups for so many elements: in rows, where one dimension does not take them.
-fn grid(elements: u32, most: u32) -> [u32; 2] {
-    let groups = elements.div_ceil(GROUP);
+/// So many workgroups in rows, where one dimension does not take them.
+fn grid(groups: u32, most: u32) -> [u32; 2] {
     let rows = groups.div_ceil(most.max(1)).max(1);
     [groups.div_ceil(rows), rows]
 }
@@ -227,10 +226,9 @@ mod tests {
     #[test]
     fn dispatches_past_one_dimension_take_two() {
         assert_eq!(grid(1, 65_535), [1, 1]);
-        assert_eq!(grid(256 * 65_535, 65_535), [65_535, 1]);
-        let [x, y] = grid(256 * 65_535 + 1, 65_535);
-        assert_eq!([x, y], [32_768, 2]);
-        assert!(x * y * GROUP > 256 * 65_535);
+        assert_eq!(grid(65_535, 65_535), [65_535, 1]);
+        assert_eq!(grid(65_536, 65_535), [32_768, 2]);
+        assert_eq!(grid(131_071, 65_535), [43_691, 3]);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 // The half-edges of the level that is refined, as all rules see them.
 //
 // Two constants stand before this file. SIDES: what all faces have, 3 or 4, or 0 for any polygons. BASE: whether this is
-// level 0, whose edges, faces and runs of corners are tables; later levels answer by arithmetic.
+// level 0, whose edges, faces and runs of corners are tables; later levels answer by arithmetic. What is read of the two
+// buffers is in a file of its own: twin, origin and start (`stored.wgsl`, or `climb.wgsl` where a level's are not there).
 //
 //   half_edges   twin | origin                               one word a half-edge each
 //   starts       vertex -> half-edge | (level 0) face | edge | first half-edge of each face, and the end
@@ -14,18 +15,6 @@
 
 fn is_boundary(twin: u32) -> bool {
     return (twin & 0x80000000u) != 0u;
-}
-
-fn twin(h: u32) -> u32 {
-    return half_edges[h];
-}
-
-fn origin(h: u32) -> u32 {
-    return half_edges[at.half_edges + h];
-}
-
-fn start(v: u32) -> u32 {
-    return starts[v];
 }
 
 fn face(h: u32) -> u32 {

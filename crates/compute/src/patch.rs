@@ -1,0 +1,197 @@
+//! The patch kernel: all points of the last levels in one dispatch, with no level between.
+//!
+//! ```text
+//!   level 0 ── fused ──► level 1 ── patches ──────────────► level L         a team of invocations a patch; points and normals
+//!              gather       └───── half-edges ── climb ──► faces, and normals of level 1's vertices
+//! ```
+//!
+//! The GPU's twin of `limn-mesh`'s `patch/`, from whose tables it is put together ([`PatchTables`]): the same rings, classes and runs
+//! of ids. Each point is stored once, in 16 bytes with its normal; nothing else grows with the level but the faces. Those need
+//! the half-edges of level L - 1, which are not built: twin and origin are found by climbing to level 1's (`climb.wgsl`).
+//!
+//! Cost, bytes a face of level L: 16 written for points and normals, and once 24 for indices. Memory besides: of a face of level 1
+//! some 150 bytes, and the tables of rings that are no spline's (4 bytes times the ring a value). Limits: rings of up to
+//! [`MOST_CONTROLS`] points, 16 KB of workgroup memory; what carries colours or texture coordinates goes level by level.
+
+use crate::fused::{Chain, drawn, level};
+use crate::kernels::{Kernel, Level, Split, Variant};
+use crate::program::{Builder, Dispatch, Limits, Program, Role};
+use crate::{Cage, Error, Rules};
+use limn_mesh::PatchTables;
+
+/// Control points that a ring may have, as long as plate and ring fit in workgroup memory: around one vertex of valence 60.
+const MOST_CONTROLS: u32 = 128;
+
+/// How a workgroup is shared among patches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Team {
+    sides: u32,
+    /// Steps along a side.
+    m: u32,
+    /// Invocations a patch.
+    size: u32,
+    /// Patches a workgroup.
+    pub teams: u32,
+}
+
+impl Team {
+    /// That of patches cut `depth` times. A team has as many columns of a plate at a time as it takes.
+    pub(crate) fn new(split: Split, depth: u32) -> Team {
+        let (size, teams) = match depth {
+            0..=2 => (16, 4),
+            3 => (64, 1),
+            4 => (128, 1),
+            _ => (256, 1),
+        };
+        Team { sides: if split == Split::Triangle { 3 } else { 4 }, m: 1 << depth, size, teams }
+    }
+
+    /// Values of a table: the grid's, and those across its sides.
+    fn items(self) -> u32 {
+        let Team { sides, m, .. } = self;
+        if sides == 4 { (m + 1) * (m + 5) } else { (m + 1) * (m + 2) / 2 + 3 * m }
+    }
+
+    /// What stands before the kernel's text.
+    pub(crate) fn constants(self) -> String {
+        let Team { m, size, teams, .. } = self;
+        let w = m + 3;
+        format!(
+            "const M = {m}u;\nconst W = {w}u;\nconst ITEMS = {}u;\nconst TEAM = {size}u;\nconst TEAMS = {teams}u;\n\
+             const GROUP_SIZE = {}u;\nconst CONTROLS = {}u;\nconst PLATES = {}u;\n",
+            self.items(),
+            size * teams,
+            3 * MOST_CONTROLS * teams,
+            3 * w * w * teams,
+        )
+    }
+
+    /// Bytes of workgroup memory.
+    #[cfg(test)]
+    fn bytes(self) -> u32 {
+        4 * 3 * self.teams * (MOST_CONTROLS + (self.m + 3) * (self.m + 3))
+    }
+}
+
+/// The program that refines `cage` by `rules` to where `tables` end; none if a ring is too large.
+///
+/// # Errors
+/// As [`crate::fused`].
+pub fn patched(cage: &Cage<'_>, rules: &Rules, tables: &PatchTables, limits: Limits) -> Result<Option<Program>, Error> {
+    let split = rules.scheme.split();
+    let sides = if split == Split::Triangle { 3 } else { 4 };
+    if tables.patches.iter().any(|ring| ring.count > MOST_CONTROLS) || tables.sides != sides {
+        return Ok(None);
+    }
+    let mut builder = Builder::new(limits);
+    let (mut once, mut each): (Vec<Dispatch>, Vec<Dispatch>) = Default::default();
+    let vertices = cage.start.len() as u32;
+    let id = builder.make("cage", 16 * u64::from(vertices), Role::Cage)?;
+    let to = (tables.start, true);
+    let first = Chain::walk(&mut builder, (cage, id), rules, to, Role::Work, (&mut once, &mut each))?;
+
+    // The sizes of the levels that are passed over.
+    let level_of = |half_edges: u32| crate::cage::Size {
+        half_edges: half_edges.into(),
+        vertices: first.count.into(),
+        faces: first.numbers.faces.into(),
+        edges: (first.next.vertices)
+            .saturating_sub(first.count.into())
+            .saturating_sub(if sides == 4 { first.numbers.faces.into() } else { 0 }),
+    };
+    let mut sizes = vec![level_of(first.numbers.half_edges)];
+    for k in 0..tables.depth as usize {
+        let next = sizes.get(k).map_or_else(Default::default, |s| s.split(split));
+        sizes.push(next);
+    }
+    let [.., before, parent, last] = sizes[..] else { return Ok(None) };
+    let count = last.vertices as u32;
+
+    let rings = rings(tables);
+    let (weights, lists) = (weights(tables), lists(tables));
+    let [half_edges, starts, ..] = first.read;
+    let rings = builder.filled("patches", &[&rings])?;
+    let lists = builder.filled("control points", &[&lists, &tables.controls])?;
+    let weights = builder.filled("weights of patches", &[&weights])?;
+    let points = builder.make("the vertices", 16 * last.vertices, Role::Vertices)?;
+    let variant = Variant { split, base: false, creased: false, scheme: 0 };
+    let all = Level { end: tables.patches.len() as u32, ..first.numbers };
+    let read = [half_edges, starts, rings, lists, weights];
+    let kernel = Kernel::Patches(variant, tables.depth);
+    each.extend(builder.step(kernel, &all, &read, &[first.values, points]));
+
+    let climbs = tables.depth - 1;
+    let numbers = Level {
+        step: climbs,
+        rest: (2 * parent.edges - parent.half_edges) as u32,
+        ..level(rules, 0, tables.start + climbs, parent, before)
+    };
+    let climbs = Some(first.count);
+    let chain = Chain { numbers, next: last, values: points, count, climbs, ..first };
+    drawn(builder, (id, vertices), &chain, [None, None], (once, each)).map(Some)
+}
+
+/// `struct Patch` of the kernel.
+fn rings(tables: &PatchTables) -> Vec<[u32; 4]> {
+    // Tables stand behind the spline.
+    let mut begin = before_tables(tables) as u32;
+    let begins: Vec<u32> = tables
+        .tables
+        .iter()
+        .map(|table| {
+            let here = begin;
+            begin += table.weights.len() as u32;
+            here
+        })
+        .collect();
+    let weights = |table: Option<u32>| table.and_then(|t| begins.get(t as usize).copied()).unwrap_or(0);
+    tables.patches.iter().map(|ring| [ring.first, ring.count, weights(ring.table), 0]).collect()
+}
+
+/// Words before the first table: 0 is none.
+fn before_tables(tables: &PatchTables) -> usize {
+    4 * tables.spline.len().max(1)
+}
+
+fn weights(tables: &PatchTables) -> Vec<f32> {
+    let mut out = tables.spline.as_flattened().to_vec();
+    out.resize(before_tables(tables), 0.0);
+    tables.tables.iter().for_each(|table| out.extend_from_slice(&table.weights));
+    out
+}
+
+/// Where each list begins, then the lists: cells, owned, runs, border; control points come behind.
+fn lists(tables: &PatchTables) -> Vec<u32> {
+    let cells = tables.cells.iter().map(|&cell| cell.into());
+    let owned = tables.owned.iter().map(|&[cell, run]| u32::from(cell) | u32::from(run) << 16);
+    let lists: [Vec<u32>; 4] = [
+        cells.collect(),
+        owned.collect(),
+        tables.runs.as_flattened().to_vec(),
+        tables.border.as_flattened().to_vec(),
+    ];
+    let mut begin = 1 + lists.len() as u32;
+    let mut out = vec![begin];
+    for list in &lists {
+        begin += list.len() as u32;
+        out.push(begin);
+    }
+    out.extend(lists.concat());
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What every WebGPU device has.
+    #[test]
+    fn a_workgroup_takes_what_is_always_there() {
+        for (split, depth) in [Split::Quad, Split::Triangle].into_iter().flat_map(|s| (2..=5).map(move |d| (s, d))) {
+            let team = Team::new(split, depth);
+            assert!(team.bytes() <= 16_384, "{team:?}: {} bytes", team.bytes());
+            assert!(team.size * team.teams <= 256, "{team:?}");
+            assert!(team.size > team.m + 3, "{team:?}: no team has a whole row");
+        }
+    }
+}

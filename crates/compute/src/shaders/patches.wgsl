@@ -1,0 +1,161 @@
+// The last levels at once: a team of invocations takes a face of the level that patches start at and makes all its descendants.
+//
+//   ring ── 16 control points, A P A^T ──┐
+//        └─ any others, rows of a table ─┴─> plate ── points and normals ──> runs of ids
+//
+// A plate is the patch's grid with one row of points around it, in workgroup memory: cell (j + 1) W + i + 1. Columns of a regular
+// patch are four numbers in registers, from which each invocation makes some of its rows. What a patch owns are runs of
+// consecutive ids, the same for all but for where they begin; the corners and middles of its sides belong to whoever owns that vertex
+// or edge, and what is nobody's on a boundary is its own. Every point is written once, with its normal, but for vertices of the
+// level patches start at: their normals need all patches around, and are made after (`climb.wgsl`).
+//
+// Constants before this file: SIDES, M steps a side, W = M + 3, ITEMS values of a table, TEAM invocations a patch, TEAMS patches
+// a group, GROUP_SIZE, CONTROLS and PLATES numbers of workgroup memory. Lists: where each of them begins, then cells, owned, runs, border,
+// controls.
+
+struct Patch {
+    first: u32,   // control points
+    count: u32,
+    weights: u32, // where its table begins; 0 for the spline, whose columns stand there
+    rest: u32,
+};
+
+@group(0) @binding(3) var<storage, read> rings: array<Patch>;
+@group(0) @binding(4) var<storage, read> lists: array<u32>;
+@group(0) @binding(5) var<storage, read> weights: array<f32>;
+@group(1) @binding(0) var<storage, read> old: array<vec4<f32>>;
+@group(1) @binding(1) var<storage, read_write> vertices: array<Vertex>;
+
+var<workgroup> controls: array<f32, CONTROLS>;
+var<workgroup> plates: array<f32, PLATES>;
+
+fn control(k: u32) -> vec3<f32> {
+    return vec3(controls[3u * k], controls[3u * k + 1u], controls[3u * k + 2u]);
+}
+
+fn point(cell: u32) -> vec3<f32> {
+    return vec3(plates[3u * cell], plates[3u * cell + 1u], plates[3u * cell + 2u]);
+}
+
+fn put(cell: u32, p: vec3<f32>) {
+    plates[3u * cell] = p.x;
+    plates[3u * cell + 1u] = p.y;
+    plates[3u * cell + 2u] = p.z;
+}
+
+fn column(i: u32) -> vec4<f32> {
+    return vec4(weights[4u * i], weights[4u * i + 1u], weights[4u * i + 2u], weights[4u * i + 3u]);
+}
+
+fn across(row: u32, a: vec4<f32>) -> vec3<f32> {
+    return a.x * control(row) + a.y * control(row + 1u) + a.z * control(row + 2u) + a.w * control(row + 3u);
+}
+
+fn spline(plate: u32, ring: u32, t: u32) {
+    let part = t / W;
+    let rows = (W + TEAM / W - 1u) / (TEAM / W);
+    let i = t % W;
+    let a = column(i);
+    let p = across(ring, a);
+    let q = across(ring + 4u, a);
+    let r = across(ring + 8u, a);
+    let s = across(ring + 12u, a);
+    for (var j = part * rows; j < min(part * rows + rows, W); j++) {
+        let b = column(j);
+        put(plate + j * W + i, b.x * p + b.y * q + b.z * r + b.w * s);
+    }
+}
+
+fn tabled(plate: u32, ring: u32, t: u32, mine: Patch) {
+    for (var i = t; i < ITEMS; i += TEAM) {
+        var sum = vec3(0.0);
+        var w = mine.weights + i;
+        for (var k = 0u; k < mine.count; k++) {
+            sum += weights[w] * control(ring + k);
+            w += ITEMS;
+        }
+        put(plate + lists[lists[0] + i], sum);
+    }
+}
+
+// The sum of the normals of the faces around a point, as long as their areas twice.
+fn normal(cell: u32) -> vec3<f32> {
+    let p = point(cell);
+    let e = point(cell + 1u) - p;
+    let n = point(cell + W) - p;
+    let w = point(cell - 1u) - p;
+    let s = point(cell - W) - p;
+    let nw = point(cell + W - 1u) - p;
+    let se = point(cell - W + 1u) - p;
+    if SIDES == 3u {
+        return cross(e, n) + cross(n, nw) + cross(nw, w) + cross(w, s) + cross(s, se) + cross(se, e);
+    }
+    let ne = point(cell + W + 1u) - p;
+    let sw = point(cell - W - 1u) - p;
+    return cross(ne, n - e) + cross(nw, w - n) + cross(sw, s - w) + cross(se, e - s);
+}
+
+fn write(id: u32, cell: u32) {
+    vertices[id] = Vertex(point(cell), octahedral(normal(cell)));
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn patches(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let team = local / TEAM;
+    let t = local % TEAM;
+    let q = at.first + (group.x + group.y * groups.x) * TEAMS + team;
+    let there = q < at.end;
+    let plate = team * W * W;
+    let ring = team * CONTROLS / 3u / TEAMS;
+    var mine = Patch(0u, 0u, 0u, 0u);
+    if there {
+        mine = rings[q];
+    }
+    for (var k = t; k < mine.count; k += TEAM) {
+        let p = old[lists[lists[4] + mine.first + k]];
+        controls[3u * (ring + k)] = p.x;
+        controls[3u * (ring + k) + 1u] = p.y;
+        controls[3u * (ring + k) + 2u] = p.z;
+    }
+    workgroupBarrier();
+    if there {
+        if mine.weights > 0u {
+            tabled(plate, ring, t, mine);
+        } else if t < TEAM / W * W {
+            spline(plate, ring, t);
+        }
+    }
+    workgroupBarrier();
+    if !there {
+        return;
+    }
+    let owned = lists[2] - lists[1];
+    for (var i = t; i < owned; i += TEAM) {
+        let cell_run = lists[lists[1] + i];
+        let run = lists[2] + 2u * (cell_run >> 16u);
+        write(lists[run] + i + lists[run + 1u] * q, plate + (cell_run & 0xffffu));
+    }
+    for (var i = t; i < SIDES * M; i += TEAM) {
+        let h = SIDES * q + i / M;
+        let p = i % M;
+        let border = lists[3] + 3u * i;
+        let cell = plate + lists[border];
+        let per = lists[border + 2u];
+        if p == 0u {
+            let v = origin(h);
+            if start(v) == h {
+                vertices[v] = Vertex(point(cell), 0u);
+            }
+        } else if p == M / 2u {
+            if owns(h) {
+                write(at.first_edge + edge(h), cell);
+            }
+        } else if per > 0u && is_boundary(twin(h)) {
+            write(lists[border + 1u] + per * ~twin(h), cell);
+        }
+    }
+}
