@@ -2,6 +2,8 @@
 //! meshes, through kernels made for a scheme and through rows.
 
 mod common;
+#[path = "refine/patches.rs"]
+mod patches;
 #[path = "common/tables.rs"]
 mod tables;
 
