@@ -35,15 +35,21 @@ pub(crate) struct Team {
 }
 
 impl Team {
-    /// That of patches cut `depth` times. A team has as many columns of a plate at a time as it takes.
+    /// That of patches cut `depth` times: large enough that all of a patch's points are made in as few rounds as they can be, in
+    /// multiples of eight.
     pub(crate) fn new(split: Split, depth: u32) -> Team {
-        let (size, teams) = match depth {
-            0..=2 => (16, 4),
-            3 => (64, 1),
-            4 => (128, 1),
-            _ => (256, 1),
+        let sides = if split == Split::Triangle { 3 } else { 4 };
+        let (size, teams) = match (sides, depth) {
+            (4, 0..=2) => (24, 4),
+            (4, 3) => (72, 3),
+            (4, 4) => (136, 1),
+            (4, _) => (208, 1),
+            (_, 0..=2) => (16, 4),
+            (_, 3) => (40, 4),
+            (_, 4) => (136, 1),
+            _ => (176, 1),
         };
-        Team { sides: if split == Split::Triangle { 3 } else { 4 }, m: 1 << depth, size, teams }
+        Team { sides, m: 1 << depth, size, teams }
     }
 
     /// Values of a table: the grid's, and those across its sides.
@@ -135,17 +141,16 @@ pub fn patched(cage: &Cage<'_>, rules: &Rules, tables: &PatchTables, limits: Lim
 fn rings(tables: &PatchTables) -> Vec<[u32; 4]> {
     // Tables stand behind the spline.
     let mut begin = before_tables(tables) as u32;
-    let begins: Vec<u32> = tables
-        .tables
-        .iter()
-        .map(|table| {
-            let here = begin;
-            begin += table.weights.len() as u32;
-            here
-        })
-        .collect();
+    let mut begins = Vec::with_capacity(tables.tables.len());
+    for table in &tables.tables {
+        begins.push(begin);
+        begin += table.weights.len() as u32;
+    }
     let weights = |table: Option<u32>| table.and_then(|t| begins.get(t as usize).copied()).unwrap_or(0);
-    tables.patches.iter().map(|ring| [ring.first, ring.count, weights(ring.table), 0]).collect()
+    let rims = tables.border.iter().filter(|[.., per]| *per > 0).count() as u32;
+    let all = tables.owned.len() as u32 + 2 * tables.sides;
+    let points = |rim: bool| if rim { all + rims } else { all };
+    tables.patches.iter().map(|ring| [ring.first, ring.count, weights(ring.table), points(ring.rim)]).collect()
 }
 
 /// Words before the first table: 0 is none.
@@ -160,16 +165,21 @@ fn weights(tables: &PatchTables) -> Vec<f32> {
     out
 }
 
-/// Where each list begins, then the lists: cells, owned, runs, border; control points come behind.
+/// Where each list begins, then the lists: cells, owned, runs, border; control points come behind. Of the border first the corners and
+/// middles of sides (0 and 1 for what they are), then what may be nobody's.
 fn lists(tables: &PatchTables) -> Vec<u32> {
     let cells = tables.cells.iter().map(|&cell| cell.into());
     let owned = tables.owned.iter().map(|&[cell, run]| u32::from(cell) | u32::from(run) << 16);
-    let lists: [Vec<u32>; 4] = [
-        cells.collect(),
-        owned.collect(),
-        tables.runs.as_flattened().to_vec(),
-        tables.border.as_flattened().to_vec(),
-    ];
+    let m = 1 << tables.depth;
+    let sides = || (0..).zip(tables.border.chunks_exact(m));
+    let of_side = |side: u32, cell: u32| cell | side << 16;
+    let ends = sides().flat_map(|(side, points)| {
+        [(0, points[0][0]), (1, points[m / 2][0])].map(|(kind, cell)| [of_side(side, cell), kind, 0])
+    });
+    let rims = sides().flat_map(|(side, points)| points.iter().map(move |&[cell, base, per]| [of_side(side, cell), base, per]));
+    let border: Vec<[u32; 3]> = ends.chain(rims.filter(|[.., per]| *per > 0)).collect();
+    let lists: [Vec<u32>; 4] =
+        [cells.collect(), owned.collect(), tables.runs.as_flattened().to_vec(), border.into_flattened()];
     let mut begin = 1 + lists.len() as u32;
     let mut out = vec![begin];
     for list in &lists {

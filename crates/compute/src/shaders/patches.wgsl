@@ -17,7 +17,7 @@ struct Patch {
     first: u32,   // control points
     count: u32,
     weights: u32, // where its table begins; 0 for the spline, whose columns stand there
-    rest: u32,
+    points: u32,  // to be written: what it owns, corners and middles of sides, on a boundary what is nobody's
 };
 
 @group(0) @binding(3) var<storage, read> rings: array<Patch>;
@@ -95,8 +95,23 @@ fn normal(cell: u32) -> vec3<f32> {
     return cross(ne, n - e) + cross(nw, w - n) + cross(sw, s - w) + cross(se, e - s);
 }
 
-fn write(id: u32, cell: u32) {
-    vertices[id] = Vertex(point(cell), octahedral(normal(cell)));
+const NOBODY = 0xffffffffu;
+
+// The id of point i among those that a patch of the border may have to write: the corner of a side, its middle, or on a boundary
+// any other.
+fn border_id(q: u32, border: u32) -> u32 {
+    let h = SIDES * q + (lists[border] >> 16u);
+    let base = lists[border + 1u];
+    let per = lists[border + 2u];
+    if per > 0u {
+        let t = twin(h);
+        return select(NOBODY, base + per * ~t, is_boundary(t));
+    }
+    if base == 0u {
+        let v = origin(h);
+        return select(NOBODY, v, start(v) == h);
+    }
+    return select(NOBODY, at.first_edge + edge(h), owns(h));
 }
 
 @compute @workgroup_size(GROUP_SIZE)
@@ -134,28 +149,19 @@ fn patches(
         return;
     }
     let owned = lists[2] - lists[1];
-    for (var i = t; i < owned; i += TEAM) {
-        let cell_run = lists[lists[1] + i];
-        let run = lists[2] + 2u * (cell_run >> 16u);
-        write(lists[run] + i + lists[run + 1u] * q, plate + (cell_run & 0xffffu));
-    }
-    for (var i = t; i < SIDES * M; i += TEAM) {
-        let h = SIDES * q + i / M;
-        let p = i % M;
-        let border = lists[3] + 3u * i;
-        let cell = plate + lists[border];
-        let per = lists[border + 2u];
-        if p == 0u {
-            let v = origin(h);
-            if start(v) == h {
-                vertices[v] = Vertex(point(cell), 0u);
-            }
-        } else if p == M / 2u {
-            if owns(h) {
-                write(at.first_edge + edge(h), cell);
-            }
-        } else if per > 0u && is_boundary(twin(h)) {
-            write(lists[border + 1u] + per * ~twin(h), cell);
+    for (var i = t; i < mine.points; i += TEAM) {
+        let inside = i < owned;
+        let entry = select(lists[3] + 3u * (i - owned), lists[1] + i, inside);
+        let cell = plate + (lists[entry] & 0xffffu);
+        var id = 0u;
+        if inside {
+            let run = lists[2] + 2u * (lists[entry] >> 16u);
+            id = lists[run] + i + lists[run + 1u] * q;
+        } else {
+            id = border_id(q, entry);
+        }
+        if id != NOBODY {
+            vertices[id] = Vertex(point(cell), octahedral(normal(cell)));
         }
     }
 }

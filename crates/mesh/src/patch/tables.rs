@@ -23,7 +23,7 @@ use crate::plan::{Plan, Step};
 use crate::refine::sharp_at;
 use crate::scheme::{Reach, Tags};
 use crate::split::{Level, on};
-use crate::topology::{Connectivity, Counts};
+use crate::topology::{Connectivity, Counts, is_boundary};
 
 /// The last levels of a plan as patches: faces of level `start`, each cut `depth` times.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,8 @@ pub struct PatchRing {
     pub count: u32,
     /// Which of [`PatchTables::tables`] holds; none for the spline.
     pub table: Option<u32>,
+    /// Whether a side lies on the boundary.
+    pub rim: bool,
 }
 
 /// What one kind of ring becomes.
@@ -161,7 +163,7 @@ impl PatchTables {
             let first = self.controls.len() as u32;
             if ring.key.is_empty() && !self.spline.is_empty() {
                 self.controls.extend(ROWS.map(|k| ring.controls[k]));
-                self.patches.push(PatchRing { first, count: 16, table: None });
+                self.patches.push(PatchRing { first, count: 16, table: None, rim: false });
                 continue;
             }
             let number = classes.number(&ring.key);
@@ -176,7 +178,9 @@ impl PatchTables {
                 self.tables.len() as u32 - 1
             });
             self.controls.extend(table.active.iter().map(|&k| ring.controls[usize::from(k)]));
-            self.patches.push(PatchRing { first, count: table.active.len() as u32, table: Some(here) });
+            let mut sides = sides as u32 * q..sides as u32 * (q + 1);
+            let rim = sides.any(|h| is_boundary(c.twin(h)));
+            self.patches.push(PatchRing { first, count: table.active.len() as u32, table: Some(here), rim });
         }
         true
     }
