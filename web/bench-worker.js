@@ -133,6 +133,7 @@ class Compute {
   #trial = /** @type {Trial | null} */ (null);
   #refiner = /** @type {import("./compute.js").Refiner | null} */ (null);
   #bytes = 0;
+  #kernels = /** @type {string[]} */ ([]);
   #wanted = /** @type {[string, number]} */ (["", 0]);
 
   /** @param {Kernel} kernel @param {GPUDevice} device */
@@ -171,7 +172,9 @@ class Compute {
     // What a driver does not like it tells through scopes alone.
     this.device.pushErrorScope("validation");
     this.#refiner = await this.runner.prepare(drawing, []);
-    this.#bytes = drawing.plan().buffers.reduce((sum, { bytes }) => sum + bytes, 0);
+    const { buffers, shaders } = drawing.plan();
+    this.#bytes = buffers.reduce((sum, { bytes }) => sum + bytes, 0);
+    this.#kernels = shaders.map(({ entry }) => entry);
     drawing.free();
     this.#refiner.run();
     const [error] = await Promise.all([this.device.popErrorScope(), this.device.queue.onSubmittedWorkDone()]);
@@ -193,6 +196,11 @@ class Compute {
 
   faces() {
     return this.trial.predicted(...this.#wanted);
+  }
+
+  /** What ran, by the names of entry points. */
+  kernels() {
+    return this.#kernels;
   }
 
   /** Bytes on the GPU. */

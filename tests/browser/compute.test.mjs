@@ -93,6 +93,59 @@ describe("refinement on the GPU", () => {
     }
   });
 
+  test("gives the same points by patches", { timeout: 240_000 }, async () => {
+    const page = await here.visit({ search: "?bench", wait: false });
+    await page.waitForSelector("#bench-run");
+    const rows = await page.evaluate(async () => {
+      const { Thread } = await import(`${location.origin}/web/bench-host.js`);
+      const [cpu, gpu] = await Promise.all(["limn-wasm", "limn-webgpu"].map((id) => Thread.open(id)));
+      const positions = new Float32Array([0, 0, 0, 1, 0, 0.2, 2, 0, 0, 0, 1, 0.3, 1, 1, 0, 2, 1, 0.1, 0.5, 2, 0.4, 1.5, 1.8, 0]);
+      const open = (/** @type {number[][]} */ faces) =>
+        ({ positions, counts: new Uint32Array(faces.map(({ length }) => length)), corners: new Uint32Array(faces.flat()) });
+      const cages = {
+        "a cube": await cpu.call("cage", "cube", 1),
+        "a cube in triangles": await cpu.call("cage", "cube-triangles", 1),
+        "an open cage": open([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 6], [4, 5, 7, 6]]),
+        "an open cage in triangles": open([[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [3, 4, 6]]),
+      };
+      const rows = [];
+      for (const [scheme, name, creased, level] of /** @type {const} */ ([
+        ["catmull-clark", "a cube", false, 5],
+        ["catmull-clark", "a cube", true, 5],
+        ["catmull-clark", "an open cage", false, 6],
+        ["catmull-clark", "an open cage", true, 5],
+        ["linear", "an open cage", false, 5],
+        ["loop", "a cube in triangles", false, 5],
+        ["loop", "an open cage in triangles", true, 5],
+      ])) {
+        const cage = cages[name];
+        const marks = { ends: cage.corners.slice(0, creased ? 4 : 0), sharpness: new Float32Array(creased ? [1.5, 10] : []) };
+        for (const thread of [cpu, gpu]) await thread.call("prepare", { ...cage, ...marks }, scheme, level);
+        await cpu.call("run", 1);
+        const [ours, theirs] = await Promise.all([gpu, cpu].map((thread) => thread.call("surface")));
+        const row = { scheme, name, creased, level, kernels: await gpu.call("kernels"), compared: theirs.positions.length, worst: 0, why: "" };
+        let [low, high] = [Infinity, -Infinity];
+        for (const x of theirs.positions) [low, high] = [Math.min(low, x), Math.max(high, x)];
+        if (ours.positions.length !== theirs.positions.length) row.why = "the counts differ";
+        theirs.positions.forEach((/** @type {number} */ x, /** @type {number} */ i) => {
+          const off = Math.abs(x - ours.positions[i]) / (high - low);
+          // NaN must not pass.
+          if (!(off <= row.worst)) row.worst = off;
+        });
+        rows.push(row);
+      }
+      cpu.close();
+      gpu.close();
+      return rows;
+    });
+    for (const row of rows) {
+      const text = JSON.stringify(row);
+      assert.ok(row.kernels.includes("patches"), text);
+      assert.ok(row.why === "" && row.compared > 3000 && row.worst <= 1e-5, text);
+    }
+    console.log(`# patches: at most ${Math.max(...rows.map(({ worst }) => worst)).toExponential(1)} of the box off`);
+  });
+
   /** @param {string} hash @param {"on" | "off"} compute */
   const open = (hash, compute = "on") => here.visit({ search: `?renderer=webgpu&compute=${compute}`, hash });
   /** @param {Awaited<ReturnType<typeof open>>} page */

@@ -19,8 +19,8 @@ use crate::program::{Builder, Dispatch, Limits, Program, Role};
 use crate::{Cage, Error, Rules};
 use limn_mesh::PatchTables;
 
-/// Control points that a ring may have, as long as plate and ring fit in workgroup memory: around one vertex of valence 60.
-const MOST_CONTROLS: u32 = 128;
+/// Control points that a ring may have, as long as plate and ring fit in workgroup memory: around one vertex of valence 46.
+const MOST_CONTROLS: u32 = 100;
 
 /// How a workgroup is shared among patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Team {
     }
 
     /// Values of a table: the grid's, and those across its sides.
-    fn items(self) -> u32 {
+    fn values(self) -> u32 {
         let Team { sides, m, .. } = self;
         if sides == 4 { (m + 1) * (m + 5) } else { (m + 1) * (m + 2) / 2 + 3 * m }
     }
@@ -63,11 +63,11 @@ impl Team {
         let Team { m, size, teams, .. } = self;
         let w = m + 3;
         format!(
-            "const M = {m}u;\nconst W = {w}u;\nconst ITEMS = {}u;\nconst TEAM = {size}u;\nconst TEAMS = {teams}u;\n\
+            "const M = {m}u;\nconst W = {w}u;\nconst FOURS = {}u;\nconst TEAM = {size}u;\nconst TEAMS = {teams}u;\n\
              const GROUP_SIZE = {}u;\nconst CONTROLS = {}u;\nconst PLATES = {}u;\n",
-            self.items(),
+            self.values().div_ceil(4),
             size * teams,
-            3 * MOST_CONTROLS * teams,
+            MOST_CONTROLS * teams,
             3 * w * w * teams,
         )
     }
@@ -75,7 +75,7 @@ impl Team {
     /// Bytes of workgroup memory.
     #[cfg(test)]
     fn bytes(self) -> u32 {
-        4 * 3 * self.teams * (MOST_CONTROLS + (self.m + 3) * (self.m + 3))
+        self.teams * (16 * MOST_CONTROLS + 12 * (self.m + 3) * (self.m + 3))
     }
 }
 
@@ -144,7 +144,7 @@ fn rings(tables: &PatchTables) -> Vec<[u32; 4]> {
     let mut begins = Vec::with_capacity(tables.tables.len());
     for table in &tables.tables {
         begins.push(begin);
-        begin += table.weights.len() as u32;
+        begin += table.controls * fours(tables) as u32;
     }
     let weights = |table: Option<u32>| table.and_then(|t| begins.get(t as usize).copied()).unwrap_or(0);
     let rims = tables.border.iter().filter(|[.., per]| *per > 0).count() as u32;
@@ -153,22 +153,35 @@ fn rings(tables: &PatchTables) -> Vec<[u32; 4]> {
     tables.patches.iter().map(|ring| [ring.first, ring.count, weights(ring.table), points(ring.rim)]).collect()
 }
 
-/// Words before the first table: 0 is none.
-fn before_tables(tables: &PatchTables) -> usize {
-    4 * tables.spline.len().max(1)
+/// Fours of a table's row.
+fn fours(tables: &PatchTables) -> usize {
+    tables.cells.len().div_ceil(4)
 }
 
-fn weights(tables: &PatchTables) -> Vec<f32> {
-    let mut out = tables.spline.as_flattened().to_vec();
-    out.resize(before_tables(tables), 0.0);
-    tables.tables.iter().for_each(|table| out.extend_from_slice(&table.weights));
+/// Fours before the first table: 0 is none.
+fn before_tables(tables: &PatchTables) -> usize {
+    tables.spline.len().max(1)
+}
+
+fn weights(tables: &PatchTables) -> Vec<[f32; 4]> {
+    let mut out = tables.spline.clone();
+    out.resize(before_tables(tables), [0.0; 4]);
+    for row in tables.tables.iter().flat_map(|table| table.weights.chunks_exact(tables.cells.len())) {
+        let (whole, rest) = row.as_chunks::<4>();
+        out.extend_from_slice(whole);
+        if !rest.is_empty() {
+            out.push([0, 1, 2, 3].map(|i| rest.get(i).copied().unwrap_or(0.0)));
+        }
+    }
     out
 }
 
 /// Where each list begins, then the lists: cells, owned, runs, border; control points come behind. Of the border first the corners and
 /// middles of sides (0 and 1 for what they are), then what may be nobody's.
 fn lists(tables: &PatchTables) -> Vec<u32> {
-    let cells = tables.cells.iter().map(|&cell| cell.into());
+    // Values that fill up fours go to the first cell, which nobody reads.
+    let mut cells: Vec<u32> = tables.cells.iter().map(|&cell| cell.into()).collect();
+    cells.resize(4 * fours(tables), 0);
     let owned = tables.owned.iter().map(|&[cell, run]| u32::from(cell) | u32::from(run) << 16);
     let m = 1 << tables.depth;
     let sides = || (0..).zip(tables.border.chunks_exact(m));
@@ -179,7 +192,7 @@ fn lists(tables: &PatchTables) -> Vec<u32> {
     let rims = sides().flat_map(|(side, points)| points.iter().map(move |&[cell, base, per]| [of_side(side, cell), base, per]));
     let border: Vec<[u32; 3]> = ends.chain(rims.filter(|[.., per]| *per > 0)).collect();
     let lists: [Vec<u32>; 4] =
-        [cells.collect(), owned.collect(), tables.runs.as_flattened().to_vec(), border.into_flattened()];
+        [cells, owned.collect(), tables.runs.as_flattened().to_vec(), border.into_flattened()];
     let mut begin = 1 + lists.len() as u32;
     let mut out = vec![begin];
     for list in &lists {

@@ -9,29 +9,25 @@
 // or edge, and what is nobody's on a boundary is its own. Every point is written once, with its normal, but for vertices of the
 // level patches start at: their normals need all patches around, and are made after (`climb.wgsl`).
 //
-// Constants before this file: SIDES, M steps a side, W = M + 3, ITEMS values of a table, TEAM invocations a patch, TEAMS patches
-// a group, GROUP_SIZE, CONTROLS and PLATES numbers of workgroup memory. Lists: where each of them begins, then cells, owned, runs, border,
-// controls.
+// Constants before this file: SIDES, M steps a side, W = M + 3, FOURS of a table's values, TEAM invocations a patch, TEAMS patches
+// a group, GROUP_SIZE, CONTROLS points and PLATES numbers of workgroup memory. Lists: where each of them begins, then cells, owned, runs,
+// border, controls.
 
 struct Patch {
     first: u32,   // control points
     count: u32,
-    weights: u32, // where its table begins; 0 for the spline, whose columns stand there
+    weights: u32, // where its table begins, control by control; 0 for the spline, whose columns stand there
     points: u32,  // to be written: what it owns, corners and middles of sides, on a boundary what is nobody's
 };
 
 @group(0) @binding(3) var<storage, read> rings: array<Patch>;
 @group(0) @binding(4) var<storage, read> lists: array<u32>;
-@group(0) @binding(5) var<storage, read> weights: array<f32>;
+@group(0) @binding(5) var<storage, read> weights: array<vec4<f32>>;
 @group(1) @binding(0) var<storage, read> old: array<vec4<f32>>;
 @group(1) @binding(1) var<storage, read_write> vertices: array<Vertex>;
 
-var<workgroup> controls: array<f32, CONTROLS>;
+var<workgroup> controls: array<vec4<f32>, CONTROLS>;
 var<workgroup> plates: array<f32, PLATES>;
-
-fn control(k: u32) -> vec3<f32> {
-    return vec3(controls[3u * k], controls[3u * k + 1u], controls[3u * k + 2u]);
-}
 
 fn point(cell: u32) -> vec3<f32> {
     return vec3(plates[3u * cell], plates[3u * cell + 1u], plates[3u * cell + 2u]);
@@ -43,38 +39,42 @@ fn put(cell: u32, p: vec3<f32>) {
     plates[3u * cell + 2u] = p.z;
 }
 
-fn column(i: u32) -> vec4<f32> {
-    return vec4(weights[4u * i], weights[4u * i + 1u], weights[4u * i + 2u], weights[4u * i + 3u]);
-}
-
 fn across(row: u32, a: vec4<f32>) -> vec3<f32> {
-    return a.x * control(row) + a.y * control(row + 1u) + a.z * control(row + 2u) + a.w * control(row + 3u);
+    return (a.x * controls[row] + a.y * controls[row + 1u] + a.z * controls[row + 2u] + a.w * controls[row + 3u]).xyz;
 }
 
 fn spline(plate: u32, ring: u32, t: u32) {
     let part = t / W;
     let rows = (W + TEAM / W - 1u) / (TEAM / W);
     let i = t % W;
-    let a = column(i);
+    let a = weights[i];
     let p = across(ring, a);
     let q = across(ring + 4u, a);
     let r = across(ring + 8u, a);
     let s = across(ring + 12u, a);
     for (var j = part * rows; j < min(part * rows + rows, W); j++) {
-        let b = column(j);
+        let b = weights[j];
         put(plate + j * W + i, b.x * p + b.y * q + b.z * r + b.w * s);
     }
 }
 
+// Four values at once: each control point is read a quarter as often.
 fn tabled(plate: u32, ring: u32, t: u32, mine: Patch) {
-    for (var i = t; i < ITEMS; i += TEAM) {
-        var sum = vec3(0.0);
-        var w = mine.weights + i;
+    for (var i = t; i < FOURS; i += TEAM) {
+        var x = vec4(0.0);
+        var y = vec4(0.0);
+        var z = vec4(0.0);
         for (var k = 0u; k < mine.count; k++) {
-            sum += weights[w] * control(ring + k);
-            w += ITEMS;
+            let w = weights[mine.weights + k * FOURS + i];
+            let p = controls[ring + k];
+            x += w * p.x;
+            y += w * p.y;
+            z += w * p.z;
         }
-        put(plate + lists[lists[0] + i], sum);
+        let cells = lists[0] + 4u * i;
+        for (var k = 0u; k < 4u; k++) {
+            put(plate + lists[cells + k], vec3(x[k], y[k], z[k]));
+        }
     }
 }
 
@@ -125,16 +125,13 @@ fn patches(
     let q = at.first + (group.x + group.y * groups.x) * TEAMS + team;
     let there = q < at.end;
     let plate = team * W * W;
-    let ring = team * CONTROLS / 3u / TEAMS;
+    let ring = team * (CONTROLS / TEAMS);
     var mine = Patch(0u, 0u, 0u, 0u);
     if there {
         mine = rings[q];
     }
     for (var k = t; k < mine.count; k += TEAM) {
-        let p = old[lists[lists[4] + mine.first + k]];
-        controls[3u * (ring + k)] = p.x;
-        controls[3u * (ring + k) + 1u] = p.y;
-        controls[3u * (ring + k) + 2u] = p.z;
+        controls[ring + k] = old[lists[lists[4] + mine.first + k]];
     }
     workgroupBarrier();
     if there {
