@@ -8,10 +8,11 @@
 //! ```
 //!
 //! Nothing here has a device: a [`Program`] says which buffers there are and what runs on them, and who has one runs it ([`mod@program`]).
-//! Two ways make the points. *The fused gather* (`fused.rs`): hand-written rules that find a level's neighbours through `twin`
+//! Three ways make the points. *The fused gather* (`fused.rs`): hand-written rules that find a level's neighbours through `twin`
 //! and `origin` alone, so a level costs one dispatch and no atomics; half-edges of the next level are arithmetic (Dupuy & Vanhoey
-//! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Rows* (`rows.rs`): every other scheme's weights as sparse
-//! rows, one dispatch a pass. Both number child vertices as `limn-mesh` does, so what was made here and there can be compared, drawn
+//! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Patches* (`patch.rs`): from level 5 on ([`path`]) the last levels of Catmull-Clark, Loop and linear at
+//! once, from the rings of the faces of level 1, with no level between. *Rows* (`rows.rs`): every other scheme's weights as sparse
+//! rows, one dispatch a pass. All number child vertices as `limn-mesh` does, so what was made here and there can be compared, drawn
 //! and exported alike.
 //!
 //! Cost on the GPU, Catmull-Clark, bytes a face of the last level: 16 written for points, 4 for normals and, once, 24 for

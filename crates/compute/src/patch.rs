@@ -101,9 +101,11 @@ pub fn patched(cage: &Cage<'_>, rules: &Rules, tables: &PatchTables, limits: Lim
         half_edges: half_edges.into(),
         vertices: first.count.into(),
         faces: first.numbers.faces.into(),
-        edges: (first.next.vertices)
-            .saturating_sub(first.count.into())
-            .saturating_sub(if sides == 4 { first.numbers.faces.into() } else { 0 }),
+        edges: (first.next.vertices).saturating_sub(first.count.into()).saturating_sub(if sides == 4 {
+            first.numbers.faces.into()
+        } else {
+            0
+        }),
     };
     let mut sizes = vec![level_of(first.numbers.half_edges)];
     for k in 0..tables.depth as usize {
@@ -189,10 +191,10 @@ fn lists(tables: &PatchTables) -> Vec<u32> {
     let ends = sides().flat_map(|(side, points)| {
         [(0, points[0][0]), (1, points[m / 2][0])].map(|(kind, cell)| [of_side(side, cell), kind, 0])
     });
-    let rims = sides().flat_map(|(side, points)| points.iter().map(move |&[cell, base, per]| [of_side(side, cell), base, per]));
+    let rims = sides()
+        .flat_map(|(side, points)| points.iter().map(move |&[cell, base, per]| [of_side(side, cell), base, per]));
     let border: Vec<[u32; 3]> = ends.chain(rims.filter(|[.., per]| *per > 0)).collect();
-    let lists: [Vec<u32>; 4] =
-        [cells, owned.collect(), tables.runs.as_flattened().to_vec(), border.into_flattened()];
+    let lists: [Vec<u32>; 4] = [cells, owned.collect(), tables.runs.as_flattened().to_vec(), border.into_flattened()];
     let mut begin = 1 + lists.len() as u32;
     let mut out = vec![begin];
     for list in &lists {

@@ -1,7 +1,8 @@
-//! From the kernel's meshes and plans to programs: which plans have kernels of their own, and the tables of both ways.
+//! From the kernel's meshes and plans to programs: which plans have kernels of their own, and the tables of all ways.
 //!
 //! ```text
 //!   mesh, plan ── rules ──► Rules, Tables ── fused ──► Program        one dispatch a level
+//!                   └ path ──► PatchTables ── patched ──►             one dispatch for all levels but the first
 //!                   └ none ── recorded ──► RowLevel .. ── rows ──►    one dispatch a pass
 //! ```
 //!
@@ -158,8 +159,9 @@ pub fn program_by(
     if mesh.colors.is_empty() && mesh.uv.is_none() && parts.is_empty() {
         let by = by.unwrap_or_else(|| path(plan.level));
         let tables = if by == Path::Fused { None } else { PatchTables::of(mesh, plan) };
-        if let Some(program) = tables.and_then(|tables| patched(&cage, &rules, &tables, limits).transpose()) {
-            return program.map(Some);
+        // What patches have no room for, levels may have.
+        if let Some(program) = tables.and_then(|tables| patched(&cage, &rules, &tables, limits).ok().flatten()) {
+            return Ok(Some(program));
         }
         return fused(&cage, &rules, plan.level, Values::Points, limits).map(Some);
     }

@@ -71,7 +71,8 @@ fn check(soup: &Soup, id: &str, level: u32, what: &str) -> bool {
         // Corners and middles of sides: the first corner of a child, and its second.
         for side in 0..sides {
             same(corners(&start)[sides * q + side], tables.border[side * m][0] as usize, false);
-            let child = if sides == 4 { &corners(&next)[4 * (4 * q + side)..] } else { &corners(&next)[3 * (3 * q + side)..] };
+            let child =
+                if sides == 4 { &corners(&next)[4 * (4 * q + side)..] } else { &corners(&next)[3 * (3 * q + side)..] };
             same(child[1], tables.border[side * m + m / 2][0] as usize, false);
         }
     }
