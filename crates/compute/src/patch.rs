@@ -13,6 +13,7 @@
 //! some 150 bytes, and the tables of rings that are no spline's (4 bytes times the ring a value). Limits: rings of up to
 //! [`MOST_CONTROLS`] points, 16 KB of workgroup memory; what carries colours or texture coordinates goes level by level.
 
+use crate::cage::Size;
 use crate::fused::{Chain, drawn, level};
 use crate::kernels::{Kernel, Level, Split, Variant};
 use crate::program::{Builder, Dispatch, Limits, Program, Role};
@@ -97,17 +98,13 @@ pub fn patched(cage: &Cage<'_>, rules: &Rules, tables: &PatchTables, limits: Lim
     let first = Chain::walk(&mut builder, (cage, id), rules, to, Role::Work, (&mut once, &mut each))?;
 
     // The sizes of the levels that are passed over.
-    let level_of = |half_edges: u32| crate::cage::Size {
-        half_edges: half_edges.into(),
+    let faces = u64::from(first.numbers.faces);
+    let mut sizes = vec![Size {
+        half_edges: first.numbers.half_edges.into(),
         vertices: first.count.into(),
-        faces: first.numbers.faces.into(),
-        edges: (first.next.vertices).saturating_sub(first.count.into()).saturating_sub(if sides == 4 {
-            first.numbers.faces.into()
-        } else {
-            0
-        }),
-    };
-    let mut sizes = vec![level_of(first.numbers.half_edges)];
+        faces,
+        edges: first.next.vertices - u64::from(first.count) - if sides == 4 { faces } else { 0 },
+    }];
     for k in 0..tables.depth as usize {
         let next = sizes.get(k).map_or_else(Default::default, |s| s.split(split));
         sizes.push(next);
@@ -115,12 +112,10 @@ pub fn patched(cage: &Cage<'_>, rules: &Rules, tables: &PatchTables, limits: Lim
     let [.., before, parent, last] = sizes[..] else { return Ok(None) };
     let count = last.vertices as u32;
 
-    let rings = rings(tables);
-    let (weights, lists) = (weights(tables), lists(tables));
     let [half_edges, starts, ..] = first.read;
-    let rings = builder.filled("patches", &[&rings])?;
-    let lists = builder.filled("control points", &[&lists, &tables.controls])?;
-    let weights = builder.filled("weights of patches", &[&weights])?;
+    let rings = builder.filled("patches", &[&rings(tables)])?;
+    let lists = builder.filled("control points", &[&lists(tables), &tables.controls])?;
+    let weights = builder.filled("weights of patches", &[&weights(tables)])?;
     let points = builder.make("the vertices", 16 * last.vertices, Role::Vertices)?;
     let variant = Variant { split, base: false, creased: false, scheme: 0 };
     let all = Level { end: tables.patches.len() as u32, ..first.numbers };
