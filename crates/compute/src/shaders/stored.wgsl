@@ -1,4 +1,5 @@
-// Half-edges that are there.
+// Half-edges of a level that are there, as `split_quads.wgsl` and the other splits wrote them or as tables of level 0 came: one
+// load each.
 
 fn twin(h: u32) -> u32 {
     return half_edges[h];
