@@ -88,6 +88,8 @@ pub(crate) enum Kernel {
     ListedFaces,
     /// Normals of vertices from these.
     ListedNormals,
+    /// Normals of vertices by tangents of the limit.
+    LimitNormals,
     /// Corners of triangles with both.
     ListedCorners,
     /// Colours in four bytes.
@@ -115,6 +117,7 @@ impl Kernel {
             Kernel::Rows { moved: true },
             Kernel::ListedFaces,
             Kernel::ListedNormals,
+            Kernel::LimitNormals,
             Kernel::ListedCorners,
             Kernel::Colors,
             Kernel::Bounds,
@@ -151,6 +154,7 @@ impl Kernel {
             Kernel::Points(_) | Kernel::Rows { .. } => "points",
             Kernel::Split(_) => "split",
             Kernel::Normals(_) | Kernel::ListedNormals => "normals",
+            Kernel::LimitNormals => "limit_normals",
             Kernel::ListedCorners => "listed_corners",
             Kernel::Colors => "colors",
             Kernel::QuadCorners(_) => "quad_corners",
@@ -169,6 +173,9 @@ impl Kernel {
             }
             Kernel::ListedFaces | Kernel::ListedNormals | Kernel::ListedCorners => {
                 return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
+            }
+            Kernel::LimitNormals => {
+                return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/limit.wgsl"));
             }
             Kernel::Colors => {
                 return format!("{work}{}{}", wgsl!("shaders/srgb.wgsl"), wgsl!("shaders/colors.wgsl"));
@@ -224,6 +231,7 @@ impl Kernel {
             Kernel::Extras(_) => [LEVEL, &[Read, Write]],
             Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
+            Kernel::LimitNormals => [&[Uniform, Read, Read], &[Read, Write]],
             Kernel::Colors | Kernel::Bounds => [&[Uniform], &[Read, Write]],
             Kernel::ListedCorners => [&[Uniform, Read, Read, Read, Read, Read], &[Write, Write, Write]],
         }

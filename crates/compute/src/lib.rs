@@ -21,13 +21,18 @@
 //! CPU's by their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
 
 mod cage;
+#[path = "../../render/src/edge_flags.rs"]
+mod edge_flags;
 mod error;
 mod finish;
 mod fused;
 mod kernels;
+mod listed;
 mod plan;
 pub mod program;
 mod rows;
+#[path = "../../render/src/srgb.rs"]
+mod srgb;
 #[path = "../../render/src/wgsl.rs"]
 mod wgsl;
 
@@ -38,7 +43,7 @@ pub use fused::fused;
 pub use kernels::Access;
 pub use plan::{Tables, program, recorded, rules};
 pub use program::{Limits, Program, bounds};
-pub use rows::{EdgeFlags, Pass, RowLevel, Rows, rows};
+pub use rows::{Pass, RowLevel, Rows, Tangents, by_rows, rows};
 
 use kernels::{Kernel, Level};
 use program::{Builder, Dispatch, Id, Role};
