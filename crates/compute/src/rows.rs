@@ -5,12 +5,13 @@
 //! ```
 //!
 //! Rows depend on connectivity and marks alone, so they stay on the GPU while the cage is edited. Memory: 8 bytes a weight and 4 a
-//! row; a row of a regular Catmull-Clark vertex has nine. To make them costs the CPU some ten times what refining costs it, so they pay where the
+//! row; a row of a regular Catmull-Clark vertex has nine. To make them costs the CPU some 200 ns a row, ten times what refining does, so they pay where the
 //! cage will move. Limits: the rows of a pass must fit one binding, and [`by_rows`] makes them for a million vertices at most.
 
 use super::kernels::{Kernel, Level};
-use super::program::{Builder, Dispatch, Limits, Program, Role};
+use super::program::{Builder, Dispatch, Id, Limits, Program, Role};
 use super::{Error, listed, recorded};
+use limn_mesh::plan::mean_edge;
 use limn_mesh::{Connectivity, Mesh, Plan, Refined, predict, refine};
 use std::sync::Arc;
 
@@ -57,8 +58,8 @@ pub struct Tangents {
 /// A plan as rows, and its last level as the CPU made it: faces, and what they carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'a> {
-    /// Vertices of level 0.
-    pub cage: u32,
+    /// Level 0.
+    pub mesh: &'a Mesh,
     /// Its steps.
     pub levels: &'a [RowLevel],
     /// What they make.
@@ -113,13 +114,26 @@ impl RowLevel {
     }
 }
 
+/// Where the scale of constants is found: those that a rule adds are so many mean lengths of the cage's edges, wherever the cage has moved.
+fn measured(builder: &mut Builder, mesh: &Mesh, cage: Id, each: &mut Vec<Dispatch>) -> Result<Id, Error> {
+    let t = &mesh.topology;
+    let ends = |e: u32| [t.edge_half_edge(e), t.next(t.edge_half_edge(e))].map(|h| t.origin(h));
+    let edges: Vec<[u32; 2]> = (0..t.edges()).map(ends).collect();
+    let edges = builder.filled("edges", &[&edges])?;
+    let scale = builder.make("scale", 16, Role::Work)?;
+    let numbers = Level { end: 1, rest: t.edges(), a: mean_edge(mesh) as f32, ..Level::default() };
+    each.extend(builder.step(Kernel::Measure, &numbers, &[edges], &[cage, scale]));
+    Ok(scale)
+}
+
 /// The program that refines by rows. Cost: linear in the last level.
 ///
 /// # Errors
 /// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
 /// leave the adapter's limits.
 pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
-    let mut before = rows.cage;
+    let cage_vertices = rows.mesh.topology.vertices();
+    let mut before = cage_vertices;
     for level in rows.levels {
         level.check(before)?;
         before = level.vertices;
@@ -129,23 +143,27 @@ pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
         return Err(Error::Mismatch { what: "points of the last level", found, expected });
     }
     let mut builder = Builder::new(limits);
-    let cage = builder.make("cage", 16 * u64::from(rows.cage), Role::Cage)?;
+    let cage = builder.make("cage", 16 * u64::from(cage_vertices), Role::Cage)?;
     let mut each: Vec<Dispatch> = Vec::new();
+    let is_moved = rows.levels.iter().flat_map(|level| &level.passes).any(|pass| !pass.moves.is_empty());
+    let scale = if is_moved { Some(measured(&mut builder, rows.mesh, cage, &mut each)?) } else { None };
     let mut points = cage;
     let mut limit = None;
     for (k, level) in rows.levels.iter().enumerate() {
         let role = if k + 1 == rows.levels.len() { Role::Vertices } else { Role::Work };
         let new = builder.make("the vertices", 16 * u64::from(level.vertices), role)?;
         for pass in &level.passes {
-            let read = [
-                builder.filled("rows", &[&pass.offsets])?,
-                builder.filled("weights", &[&pass.entries])?,
-                builder.filled("moves", &[&pass.moves])?,
-            ];
+            let mut read =
+                vec![builder.filled("rows", &[&pass.offsets])?, builder.filled("weights", &[&pass.entries])?];
+            let scale = scale.filter(|_| !pass.moves.is_empty());
+            if scale.is_some() {
+                read.push(builder.filled("moves", &[&pass.moves])?);
+            }
             let end = pass.offsets.len().saturating_sub(1) as u32;
             let numbers = Level { first_face: pass.first, end, ..Level::default() };
-            let kernel = Kernel::Rows { moved: !pass.moves.is_empty() };
-            each.extend(builder.step(kernel, &numbers, &read, &[points, new]));
+            let kernel = Kernel::Rows { moved: scale.is_some() };
+            let work: Vec<Id> = [points, new].into_iter().chain(scale).collect();
+            each.extend(builder.step(kernel, &numbers, &read, &work));
         }
         if !level.tangents.offsets.is_empty() {
             let read = [
@@ -158,7 +176,7 @@ pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
     }
     let (drawn, runs) = listed::drawn(&mut builder, (rows.level, rows.parts), (points, before), limit, &mut each)?;
     let bounds = Some(builder.bounds(points, before, &mut each)?);
-    let (once, cage_vertices) = (Vec::new(), rows.cage);
+    let once = Vec::new();
     let (shaders, buffers) = (builder.shaders(), builder.buffers);
     let (vertices, count, packed) = (points, before, None);
     Ok(Program { buffers, shaders, once, each, cage, cage_vertices, vertices, count, drawn, packed, bounds, runs })
@@ -180,5 +198,5 @@ pub fn by_rows(mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], limits: Limits) -> 
     }
     let level = &refine(mesh, plan, u64::MAX)?;
     let levels = &recorded(mesh, plan)?;
-    rows(&Rows { cage: mesh.topology.vertices(), levels, level, parts }, limits).map(Some)
+    rows(&Rows { mesh, levels, level, parts }, limits).map(Some)
 }

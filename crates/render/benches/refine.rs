@@ -110,7 +110,7 @@ fn main() {
                 (Some(rules), _) => fused(&prepared.cage(&mesh), rules, level, Values::Points, limits(&gpu))
                     .map_err(|e| e.to_string())
                     .and_then(|program| Refiner::new(&gpu, &mut compute, &program).map_err(|e| e.to_string())),
-                (None, Some(refined)) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined, Values::Points)),
+                (None, Some(refined)) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined)),
                 (None, None) => Err("it cannot be refined".to_owned()),
             };
             // Compiles, too.

@@ -13,7 +13,7 @@ pub mod cages;
 pub mod same;
 
 use crate::{Drawing, limits};
-use limn_mesh::{Boundary, Faces, Job, Mesh, Plan, Refined, Soup, Weld, scheme};
+use limn_mesh::{Boundary, Faces, Job, Mesh, Plan, Refined, SCHEMES, Soup, Weld, scheme};
 use same::{Sorted, Surface};
 use std::sync::Arc;
 #[cfg(target_arch = "wasm32")]
@@ -73,6 +73,11 @@ impl Trial {
         }
         soup.marks.creases = ends.as_chunks().0.iter().copied().zip(sharpness.iter().copied()).collect();
         Trial { soup, made: None }
+    }
+
+    /// The names of all schemes.
+    pub fn schemes() -> Vec<String> {
+        SCHEMES.iter().map(|entry| entry.info.id.to_owned()).collect()
     }
 
     /// Refines to a level, from indexed faces; with unit normals at its points if it is `shaded`.

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod drawn;
+#[path = "../common/tables.rs"]
 mod tables;
 
 use common::renderer;
@@ -291,7 +292,8 @@ fn more_groups_than_one_dimension_takes() {
 fn a_cage_that_moves() {
     let Some(mut check) = Check::new() else { return };
     let mesh = build(&named("cube"));
-    for id in ["catmull-clark", "doo-sabin"] {
+    // A fractal's constants are lengths of the cage's edges.
+    for id in ["catmull-clark", "doo-sabin", "mid-edge", "fractal"] {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 3);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
         let mut refiner = match rules(&mesh, &plan) {

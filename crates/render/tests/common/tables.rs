@@ -1,7 +1,7 @@
 //! From the kernel's meshes and plans to refiners, and their vertices back.
 
 use limn_compute::{Program, Rows, Rules, Tables, Values, fused, recorded};
-use limn_mesh::{Connectivity, Faces, Mesh, Plan, Refined};
+use limn_mesh::{Faces, Mesh, Plan, Refined};
 use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Gpu, pack};
 
@@ -17,7 +17,7 @@ pub fn faces(refined: &Refined) -> limn_render::Faces<'_> {
 /// Refines by rows.
 pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined) -> Refiner {
     let levels = recorded(mesh, plan).unwrap();
-    let rows = Rows { cage: mesh.topology.vertices(), levels: &levels, level: refined, parts: &[] };
+    let rows = Rows { mesh, levels: &levels, level: refined, parts: &[] };
     run(gpu, compute, mesh, limn_compute::rows(&rows, limits(gpu)).unwrap(), Values::Points)
 }
 
