@@ -33,8 +33,6 @@ pub struct Cage<'a> {
     pub sharpness: &'a [f32],
     /// How sharp each vertex is; may be shorter.
     pub vertex_sharpness: &'a [f32],
-    /// Whether everything on the boundary stays, on every level: seams that are straight.
-    pub straight: bool,
 }
 
 /// How many of everything a level has.

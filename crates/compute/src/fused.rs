@@ -213,10 +213,7 @@ impl Chain {
             let at = k as usize;
             let (size, next) = (sizes[at], sizes[at + 1]);
             let before = if k == 0 { Size::default() } else { sizes[at - 1] };
-            let mut numbers = level(rules, marked, k, size, before);
-            if cage.straight {
-                numbers.corners = 2;
-            }
+            let numbers = level(rules, marked, k, size, before);
             let variant = |scheme, creased| Variant { split, base: k == 0 && split != Split::Sqrt3, creased, scheme };
             let read = [held.half_edges, held.starts, marks, held.sharpness.unwrap_or(nothing), angles];
             let role = if k + 1 == to { role } else { Role::Work };

@@ -147,7 +147,6 @@ pub fn program(mesh: &Mesh, plan: &Plan, parts: &[u32], limits: Limits) -> Resul
             stays: &pins,
             sharpness: &tables.sharpness,
             vertex_sharpness: &uv_sharpness,
-            straight: plan.rules.face_varying == FaceVarying::Boundaries,
             ..on.on_half_edges(&uv.topology)
         },
         // Corners are among the pins, and no others.

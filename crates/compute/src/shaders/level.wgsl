@@ -124,9 +124,6 @@ fn stays(v: u32) -> bool {
         }
         rounded = rounded || (marks[v].x & 2u) != 0u;
     }
-    if at.corners == 2u {
-        return is_boundary(twin(start(v)));
-    }
     if rounded {
         return false;
     }

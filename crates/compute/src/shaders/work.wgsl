@@ -9,7 +9,7 @@ struct Level {
     owned: u32,      // edges from here on lie on the boundary and belong to the last side of their face
     middle: u32,     // triangles: half-edges from here on are of those in the middle of a face of the level before
     step: u32,       // the level's number
-    corners: u32,    // 1: boundary vertices of one face stay; 2: all boundary vertices do
+    corners: u32,    // whether boundary vertices of one face stay
     chaikin: u32,    // how creases soften
     marked: u32,     // vertices of level 0 that have marks; 0 if none has
     first: u32,      // what this dispatch works on: elements first .. end

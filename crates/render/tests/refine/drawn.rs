@@ -37,9 +37,7 @@ impl Check {
         self.same(&refiner, &refined, what);
         let uploaded = self.uploaded(case, &refined, way);
         let mut surface = refiner.surface(uploaded.bounds(), None).unwrap();
-        if !parts.is_empty() {
-            surface.settle(uploaded.bounds(), &PARTS, program.runs.as_flattened());
-        }
+        surface.settle(uploaded.bounds(), &PARTS, program.runs.as_flattened());
         self.same_picture(uploaded, surface, what);
     }
 
@@ -51,10 +49,8 @@ impl Check {
         data.uv = refined.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
         data.force_corners = !refined.colors.is_empty();
         let part_of = |f: usize| case.parts.get(refined.face_source(f as u32) as usize).copied().unwrap_or(0);
-        if !case.parts.is_empty() {
-            data.parts = &PARTS;
-            data.part_of = Some(&part_of);
-        }
+        data.parts = &PARTS;
+        data.part_of = if case.parts.is_empty() { None } else { Some(&part_of) };
         let kind_of = |f: usize| refined.kinds.get(f).map_or(0, |k| *k as u32 + 1);
         data.kind_of = (!refined.kinds.is_empty()).then_some(&kind_of);
         if way == Way::Rows {
@@ -66,11 +62,13 @@ impl Check {
         upload.finish()
     }
 
-    /// A chequered picture and two materials.
+    /// A chequered picture, another one when turned, and two materials.
     fn paint(&mut self) {
         let paint = |[r, g, b]: [f32; 3]| Material { base_color: [r, g, b, 1.0], texture: Some(0) };
-        let rgba: Vec<u8> =
-            (0..64).flat_map(|i| if (i + i / 8) % 2 == 0 { [255; 4] } else { [90, 160, 255, 255] }).collect();
+        let texel = |i: u8| {
+            if (i + i / 8).is_multiple_of(2) { [255, 30 * (i % 8), 255, 255] } else { [90, 160, 25 * (i / 8), 255] }
+        };
+        let rgba: Vec<u8> = (0..64).flat_map(texel).collect();
         self.renderer.set_textures(&[TextureData { width: 8, height: 8, rgba: &rgba }]).unwrap();
         self.renderer.set_materials(&[paint([0.9, 0.6, 0.3]), paint([0.4, 0.9, 0.5])]);
     }
@@ -102,7 +100,9 @@ fn textured(soup: &mut Soup) {
             let [x, y, _] = soup.positions[v as usize];
             let chart = if f % 5 == 3 { f as f32 } else { f32::from(u8::from(f > soup.face_count() / 2)) };
             soup.uv_corners.push(soup.uvs.len() as u32);
-            soup.uvs.push([0.25 * x + chart * 0.1, 0.25 * y - chart * 0.05]);
+            // Bent, so that a curve is none of its chords.
+            let [a, b] = [v * 7 % 5, v * 3 % 4].map(|n| n as f32 * 0.06);
+            soup.uvs.push([0.25 * x + chart * 0.1 + a, 0.25 * y - chart * 0.05 + b]);
         }
     }
 }
