@@ -314,6 +314,61 @@ fn a_cage_that_moves() {
     }
 }
 
+/// The list in the documentation of `program`: each of these has rows, and its neighbour on the list's other side has kernels.
+#[test]
+fn what_has_no_kernels_has_rows() {
+    let Some(check) = Check::new() else { return };
+    let limits = limits(check.gpu());
+    let [cube, sheet] = [named("cube"), sheet(4)];
+    let [cut, cut_sheet] = [&cube, &sheet].map(triangles);
+    let holed = |mut soup: Soup| {
+        soup.marks.holes.push(1);
+        soup
+    };
+    let parted = |n: usize| (0..n as u32).map(|f| f % 2).collect::<Vec<u32>>();
+    let plain = |_: &mut Plan| ();
+    let cases: [(&str, Soup, &[u32], &dyn Fn(&mut Plan), bool); 18] = [
+        ("kobbelt", cube.clone(), &[], &plain, false),
+        ("doo-sabin", cube.clone(), &[], &plain, true),
+        ("doo-sabin", cube.clone(), &parted(6), &plain, false),
+        ("doo-sabin", sheet.clone(), &[], &plain, false),
+        ("sqrt3", cut.clone(), &[], &plain, true),
+        ("sqrt3", cut_sheet.clone(), &[], &plain, false),
+        ("sqrt3", creased(cut.clone()), &[], &plain, false),
+        ("loop", creased(cut_sheet.clone()), &[], &plain, true),
+        ("butterfly", creased(cut_sheet.clone()), &[], &plain, false),
+        ("modified-butterfly", cut_sheet.clone(), &[], &plain, true),
+        ("modified-butterfly", creased(cut_sheet), &[], &plain, false),
+        ("catmull-clark", cube.clone(), &parted(6), &plain, true),
+        ("catmull-clark", cube.clone(), &[], &|plan| plan.limit = true, false),
+        ("catmull-clark", cube.clone(), &[], &|plan| plan.fairings.push(Fairing { at: 1, iterations: 1 }), false),
+        (
+            "catmull-clark",
+            cube.clone(),
+            &[],
+            &|plan| plan.later.push(Run { from: 1, scheme: scheme("linear").unwrap(), params: Params::default() }),
+            false,
+        ),
+        ("catmull-clark", holed(cube), &[], &plain, false),
+        ("catmull-clark", sheet.clone(), &[], &|plan| plan.rules.boundary = Boundary::None, false),
+        ("catmull-clark", sheet, &[], &|plan| plan.rules.boundary = Boundary::EdgeOnly, true),
+    ];
+    for (id, soup, parts, tweak, kernels) in cases {
+        let mesh = build(&soup);
+        let mut plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 2);
+        tweak(&mut plan);
+        assert_eq!(program(&mesh, &plan, parts, limits).unwrap().is_some(), kernels, "{id}");
+        assert!(by_rows(&mesh, &plan, parts, limits).unwrap().is_some(), "{id}");
+        // The cage itself, and more than rows are made for.
+        assert_eq!(program(&mesh, &plan.to(0), parts, limits).unwrap(), None);
+        assert_eq!([0, 11].map(|level| by_rows(&mesh, &plan.to(level), parts, limits).unwrap()), [None, None]);
+    }
+    // A sheet of triangles for a scheme of triangles, or a sentence.
+    let loops = Plan::new(scheme("loop").unwrap(), Boundary::EdgeAndCorner, 2);
+    let error = by_rows(&build(&named("cube")), &loops, &[], limits).unwrap_err();
+    assert!(error.to_string().contains("triangulate first"), "{error}");
+}
+
 /// Tables that would hang a kernel, or that no buffer holds, come back as a sentence.
 #[test]
 fn bad_tables_and_large_levels_are_refused() {
