@@ -283,6 +283,7 @@ describe("refinement on the GPU", () => {
     await saysAfter(page, [
       // By rows.
       ["scheme j-spline", "G"],
+      ["scheme fractal", "G"],
       ["scheme doo-sabin", "G"],
       ["limit on", "G"],
       ["limit off", "G"],
