@@ -20,7 +20,7 @@ import { Runner } from "./compute.js";
 /**
  * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
  * @typedef {{ run(scheme: string, level: number, shaded: boolean): void, clear(): void, faces(): number, vertices(): number, normals(): number, corners(): number, positions(): Float32Array,
- *   draw(scheme: string, level: number, buffer: number, groups: number): import("./compute.js").Drawing | undefined,
+ *   draw(scheme: string, level: number, buffer: number, groups: number, rows: boolean): import("./compute.js").Drawing | undefined,
  *   predicted(scheme: string, level: number): number, face_counts(): Uint32Array, face_corners(): Uint32Array, differs(p: Float32Array, n: Uint32Array, c: Uint32Array, tolerance: number): string }} Trial
  * @typedef {{ Trial: { cage(name: string, n: number): Trial, of(p: Float32Array, n: Uint32Array, c: Uint32Array, ends: Uint32Array, sharpness: Float32Array): Trial },
  *   Stores: new (bytes: number) => { store(n: number): number } }} Kernel
@@ -167,7 +167,7 @@ class Compute {
   async run() {
     this.#refiner?.free();
     this.#refiner = null;
-    const drawing = this.trial.draw(...this.#wanted, ...this.runner.limits);
+    const drawing = this.trial.draw(...this.#wanted, ...this.runner.limits, false);
     if (!drawing) throw new Error("it has no kernels for this");
     // What a driver does not like it tells through scopes alone.
     this.device.pushErrorScope("validation");

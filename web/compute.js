@@ -14,7 +14,7 @@
  *   cage: number, vertices: number, count: number, bounds: number | undefined }} Plan
  * @typedef {{ shape(): Uint32Array, runs(): Uint32Array, points(): Float32Array<ArrayBuffer>, contents(id: number): Uint8Array<ArrayBuffer>, plan(): Plan, free(): void }} Drawing
  * @typedef {{ mesh(bytes: Uint8Array): void, start(plan: Uint8Array, budget: number): object,
- *   draw(plan: Uint8Array, buffer: number, groups: number, parts: Uint32Array): Drawing | undefined }} Kernel
+ *   draw(plan: Uint8Array, buffer: number, groups: number, parts: Uint32Array, rows: boolean): Drawing | undefined }} Kernel
  */
 
 // The numbers of WebGPU's GPUBufferUsage.
@@ -26,7 +26,7 @@ const USAGE = {
   vertices: STORAGE | VERTEX | COPY_SRC,
   indices: STORAGE | INDEX | COPY_DST,
   corners: STORAGE | VERTEX,
-  extras: STORAGE | VERTEX,
+  extras: STORAGE | VERTEX | COPY_DST,
   colors: STORAGE | VERTEX | COPY_SRC,
   bounds: STORAGE | COPY_SRC | COPY_DST,
 };
@@ -105,9 +105,7 @@ export class Refiner {
     this.device = device;
     const given = [...drawn];
     const buffers = plan.buffers.map(({ role, bytes, filled, drawn: isDrawn }, id) => {
-      const theirs = isDrawn ? given.shift() : undefined;
-      if (theirs) return theirs;
-      const buffer = this.#make(bytes, USAGE[role]);
+      const buffer = (isDrawn ? given.shift() : undefined) ?? this.#make(bytes, USAGE[role]);
       if (filled) device.queue.writeBuffer(buffer, 0, drawing.contents(id));
       return buffer;
     });
@@ -270,15 +268,19 @@ function decode(words) {
 }
 
 /**
- * Whether the GPU refines: as the page's address says (`compute=on` or `off`), else unless the adapter is a program: level 5 of the
- * creature takes that some seconds, and the CPU's patches a twentieth of one.
+ * What the GPU refines. A scheme that has kernels of its own, unless the adapter is a program: level 5 of the creature takes that
+ * some seconds, and the CPU's patches a twentieth of one. Others go by rows, which cost the CPU more to make than the level itself: for
+ * a cage that will move they pay, for showing a level once they do not. The page's address decides it otherwise: `compute=off`
+ * is nothing, `compute=on` all there is, by rows where there are no kernels.
+ * @returns {Promise<"nothing" | "kernels" | "all">}
  */
-async function isWanted() {
+async function wanted() {
   const wish = new URLSearchParams(location.search).get("compute");
+  if (wish) return wish === "on" ? "all" : "nothing";
   const adapter = await navigator.gpu.requestAdapter();
   // Where browsers told it before.
   const isProgram = adapter?.info.isFallbackAdapter ?? Reflect.get(adapter ?? {}, "isFallbackAdapter") === true;
-  return wish ? wish === "on" : !isProgram;
+  return isProgram ? "nothing" : "kernels";
 }
 
 /**
@@ -287,12 +289,13 @@ async function isWanted() {
  */
 export async function attach(kernel, wake) {
   watch();
-  let works = await isWanted();
+  const what = await wanted();
+  let works = what !== "nothing";
   return {
     mesh: (/** @type {Uint8Array} */ bytes) => kernel.mesh(bytes),
     start: (/** @type {Uint8Array} */ plan, /** @type {number} */ budget) => kernel.start(plan, budget),
     draw: (/** @type {Uint8Array} */ plan, /** @type {number} */ buffer, /** @type {number} */ groups, /** @type {Uint32Array} */ parts) => {
-      const drawing = works ? kernel.draw(plan, buffer, groups, parts) : undefined;
+      const drawing = works ? kernel.draw(plan, buffer, groups, parts, what === "all") : undefined;
       return drawing && new Picture(drawing, (failed) => {
         works &&= !failed;
         wake();

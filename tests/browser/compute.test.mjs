@@ -146,6 +146,108 @@ describe("refinement on the GPU", () => {
     console.log(`# patches: at most ${Math.max(...rows.map(({ worst }) => worst)).toExponential(1)} of the box off`);
   });
 
+  test("gives by rows what every scheme gives, and follows a cage that moves", { timeout: 120_000 }, async () => {
+    const page = await here.visit({ search: "?bench", wait: false });
+    const cases = await page.evaluate(async () => {
+      const { Runner } = await import(`${location.origin}/web/compute.js`);
+      const { Trial, default: load } = await import(`${location.origin}/pkg/trial/limn_kernel.js`);
+      await load({ module_or_path: fetch(`${location.origin}/pkg/trial/limn_kernel_bg.wasm`) });
+      const device = await (await navigator.gpu.requestAdapter())?.requestDevice();
+      const runner = new Runner(device);
+      // What passes to the device, and how many buffers are made.
+      let sent = /** @type {number[]} */ ([]);
+      let made = 0;
+      const [write, create] = [device.queue.writeBuffer, device.createBuffer];
+      device.queue.writeBuffer = (/** @type {any[]} */ ...args) => (sent.push(args[2].byteLength), write.apply(device.queue, args));
+      device.createBuffer = (/** @type {any} */ descriptor) => ((made += 1), create.call(device, descriptor));
+      /** @param {Float32Array} ours four numbers a vertex @param {Float32Array} theirs three */
+      const distance = (ours, theirs) => {
+        if (ours.length / 4 !== theirs.length / 3) return Infinity;
+        let worst = 0;
+        const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+        theirs.forEach((x, i) => {
+          const k = i % 3;
+          [low[k], high[k]] = [Math.min(low[k] ?? 0, x), Math.max(high[k] ?? 0, x)];
+          const off = Math.abs(x - (ours[4 * ((i - k) / 3) + k] ?? NaN));
+          // NaN must not pass.
+          if (!(off <= worst)) worst = off;
+        });
+        return worst / Math.max(...high.map((x, k) => x - (low[k] ?? 0)));
+      };
+      const cases = [];
+      for (const scheme of Trial.schemes()) {
+        // The pyramid is open and has faces of three and four corners.
+        const pyramid = { positions: new Float32Array([0, 0, 0, 2, 0, 0.1, 2, 2, 0, 0, 2, 0.3, 1, 1, 1.5, 3, 1, 0.2, 3, 3, 0]), counts: [3, 3, 3, 3, 4], corners: [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 5, 6, 2] };
+        const cube = Trial.cage("cube", 0);
+        const closed = { positions: cube.positions(), counts: cube.face_counts(), corners: cube.face_corners() };
+        for (const [name, cage] of Object.entries({ closed, open: pyramid })) {
+          for (const creased of [false, true]) {
+            const marks = creased ? [new Uint32Array([cage.corners[0], cage.corners[1], cage.corners[1], cage.corners[2]]), new Float32Array([1.5, 10])] : [new Uint32Array(), new Float32Array()];
+            const of = (/** @type {Float32Array} */ positions) => {
+              const trial = Trial.of(positions, cage.counts, cage.corners, ...marks);
+              if (trial.predicted(scheme, 1)) return trial;
+              // Cut into triangles, each a fan.
+              const fans = [];
+              let first = 0;
+              for (const n of cage.counts) {
+                for (let k = 2; k < n; k += 1) fans.push(cage.corners[first], cage.corners[first + k - 1], cage.corners[first + k]);
+                first += n;
+              }
+              return Trial.of(positions, new Array(fans.length / 3).fill(3), fans, ...marks);
+            };
+            const there = new Float32Array(cage.positions);
+            const elsewhere = there.map((x, i) => (i >= 3 && i < 6 ? 1.5 * x - 0.4 : x));
+            const [before, after] = [of(there), of(elsewhere)];
+            for (const level of [1, 2, 3]) {
+              if (level > 1 && before.predicted(scheme, level) > 3000) break;
+              for (const rows of [true, false]) {
+                const drawing = before.draw(scheme, level, ...runner.limits, rows);
+                const row = { scheme, name, creased, level, rows, there: drawing !== undefined, worst: NaN, moved: NaN, sent: [0], made: 0 };
+                cases.push(row);
+                if (!drawing) continue;
+                const refiner = await runner.prepare(drawing, []);
+                const read = async () => new Float32Array(await refiner.read(refiner.vertices, refiner.count * 16));
+                refiner.run();
+                before.run(scheme, level, false);
+                row.worst = distance(await read(), before.positions());
+                if (level === 2) {
+                  [sent, made] = [[], 0];
+                  refiner.move(1, new Float32Array([...elsewhere.slice(3, 6), 0]));
+                  refiner.run();
+                  [row.sent, row.made] = [[...sent], made];
+                  after.run(scheme, level, false);
+                  row.moved = distance(await read(), after.positions());
+                }
+                refiner.free();
+                drawing.free();
+              }
+            }
+          }
+        }
+      }
+      return cases;
+    });
+    const schemes = new Set(cases.map(({ scheme }) => scheme));
+    assert.ok(schemes.size >= 18, [...schemes].join());
+    for (const row of cases.filter(({ there }) => there)) {
+      const what = JSON.stringify(row);
+      assert.ok(row.worst <= 1e-5, what);
+      if (row.level !== 2) continue;
+      // One vertex has moved, and nothing else has passed.
+      assert.ok(row.moved <= 1e-5, what);
+      assert.deepEqual([row.sent, row.made], [[16], 0], what);
+    }
+    // Rows there are for everything, kernels for those of SCHEMES.
+    assert.deepEqual(cases.filter((row) => row.rows && !row.there), []);
+    const fused = new Set(cases.filter((row) => !row.rows && row.there).map(({ scheme }) => scheme));
+    assert.deepEqual([...fused].sort(), SCHEMES.map(([scheme]) => scheme).sort());
+    for (const scheme of schemes) {
+      const most = Math.max(...cases.filter((row) => row.scheme === scheme && row.rows).map(({ level }) => level));
+      assert.ok(most >= (scheme === "n-way" ? 2 : 3), `${scheme} was compared to level ${most}`);
+    }
+    console.log(`# ${cases.filter(({ there }) => there).length} levels, at most ${Math.max(...cases.filter(({ there }) => there).map(({ worst }) => worst)).toExponential(1)} of the box off`);
+  });
+
   /** @param {string} hash @param {"on" | "off"} compute */
   const open = (hash, compute = "on") => here.visit({ search: `?renderer=webgpu&compute=${compute}`, hash });
   /** @param {Awaited<ReturnType<typeof open>>} page */
@@ -157,6 +259,10 @@ describe("refinement on the GPU", () => {
       "#1;open+builtin:icosahedron;scheme+loop;level+4;view+edges=on",
       "#1;open+builtin:dodecahedron;scheme+doo-sabin;level+3;view+edges=bold",
       "#1;open+builtin:cube;crease+0-1+10;scheme+catmull-clark;level+3",
+      // By rows: shared quads, triangles, and polygons of several kinds.
+      "#1;open+builtin:cube;scheme+kobbelt;level+3;view+edges=bold",
+      "#1;open+builtin:dodecahedron;scheme+mid-edge;level+3;view+edges=bold",
+      "#1;open+builtin:cube;scheme+catmull-clark;limit+on;level+2;view+edges=on",
     ]) {
       const [gpu, cpu] = [await open(hash), await open(hash, "off")];
       assert.match((await said(gpu)) ?? "", /^refined in .* on the GPU /, hash);
@@ -186,43 +292,83 @@ describe("refinement on the GPU", () => {
     await writeFile(join(folder, "box.obj"), ["mtllib box.mtl", ...corner, "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", ...faces].join("\n"));
     await writeFile(join(folder, "box.mtl"), "newmtl checked\nKd 1 1 1\nmap_Kd box.png\nnewmtl plain\nKd 0.9 0.3 0.2\n");
     await writeFile(join(folder, "box.png"), PNG.sync.write(picture8));
+    // Kernels, kernels with a crease beside a seam that stays straight, and rows.
+    const views = ["level 3", "crease 0-1 10; face-varying boundaries", "scheme doo-sabin"];
     const pictures = [];
     for (const compute of /** @type {const} */ (["on", "off"])) {
       const page = await open("", compute);
       await drop(page, ["box.obj", "box.mtl", "box.png"].map((name) => join(folder, name)));
       await ready(page, (state) => state.model.name === "box.obj");
-      await cmd(page, "level 4");
-      await ready(page, (state) => state.shown.level === 4);
-      assert.match((await said(page)) ?? "", compute === "on" ? / on the GPU / : / on the CPU /);
       await cmd(page, "view camera=iso");
-      await page.waitForTimeout(300);
-      pictures.push(await picture(page));
+      for (const view of views) {
+        const { link } = await state(page);
+        for (const command of view.split("; ")) await cmd(page, command);
+        await ready(page, (state, link) => state.link !== link, link);
+        assert.match((await said(page)) ?? "", compute === "on" ? / on the GPU / : / on the CPU /, view);
+        await page.waitForTimeout(300);
+        pictures.push(await picture(page));
+      }
       await page.close();
     }
-    const [ours, theirs] = /** @type {[PNG, PNG]} */ (pictures);
-    const found = difference(ours, theirs);
-    const good = found.inside === 0 && found.share <= 0.001;
-    if (!good) await Promise.all([keep("compute-textures-on", ours), keep("compute-textures-off", theirs)]);
-    assert.ok(good, JSON.stringify(found));
-    assert.ok(content(ours).detail > 0.005, `detail ${content(ours).detail}`);
+    for (const [i, view] of views.entries()) {
+      const [ours, theirs] = /** @type {[PNG, PNG]} */ ([pictures[i], pictures[views.length + i]]);
+      const found = difference(ours, theirs);
+      const good = found.inside === 0 && found.share <= 0.001;
+      if (!good) await Promise.all([keep("compute-textures-on", ours), keep("compute-textures-off", theirs)]);
+      assert.ok(good, `${view}: ${JSON.stringify(found)}`);
+      assert.ok(content(ours).detail > 0.005, `detail ${content(ours).detail} of ${view}`);
+    }
   });
 
-  test("gives the CPU what the GPU has no kernels for, and says so", async () => {
-    const page = await open("#1;open+builtin:cube;scheme+catmull-clark;level+3");
-    assert.match((await said(page)) ?? "", / on the GPU /);
-    for (const [command, where] of /** @type {const} */ ([
-      ["scheme j-spline", "C"],
-      ["scheme doo-sabin", "G"],
-      ["limit on", "C"],
-      ["limit off", "G"],
-      ["view points=on", "C"],
-      ["view points=off", "C"], // what is there stays
-      ["level 4", "G"],
-    ])) {
+  /** Sends commands, and expects the status line to say who refined. @param {Awaited<ReturnType<typeof open>>} page @param {readonly (readonly [string, string])[]} commands */
+  const saysAfter = async (page, commands) => {
+    for (const [command, where] of commands) {
       await cmd(page, command);
       await page.waitForFunction((text) => document.querySelector("#status-engine")?.textContent?.includes(text), ` on the ${where}PU `);
       await ready(page);
       assert.deepEqual((await cards(page)).filter(({ kind }) => kind === "error"), [], command);
+    }
+  };
+
+  test("gives the CPU what wants points there, and says so", async () => {
+    const page = await open("#1;open+builtin:cube;scheme+catmull-clark;level+3");
+    assert.match((await said(page)) ?? "", / on the GPU /);
+    await saysAfter(page, [
+      // By rows.
+      ["scheme j-spline", "G"],
+      ["scheme fractal", "G"],
+      ["scheme doo-sabin", "G"],
+      ["limit on", "G"],
+      ["limit off", "G"],
+      ["view points=on", "C"],
+      ["view points=off", "C"], // what is there stays
+      ["level 4", "G"],
+      // The cage itself.
+      ["level 0", "C"],
+    ]);
+  });
+
+  test("gives the CPU what the GPU has no kernels for where the address says nothing, and says so", async () => {
+    // As if the adapter were none of software.
+    const source = await readFile(new URL("../../web/compute.js", import.meta.url), "utf8");
+    const faster = source.replace('return isProgram ? "nothing" : "kernels"', 'return "kernels"');
+    assert.notEqual(faster, source);
+    here.site.extra.set("/web/compute.js", faster);
+    try {
+      const page = await here.visit({ search: "?renderer=webgpu", hash: "#1;open+builtin:cube;scheme+catmull-clark;level+3" });
+      assert.match((await said(page)) ?? "", / on the GPU /);
+      await saysAfter(page, [
+        ["scheme j-spline", "C"],
+        ["scheme doo-sabin", "G"],
+        ["limit on", "C"],
+        ["limit off", "G"],
+        ["scheme linear from=2", "C"],
+        ["scheme loop", "G"],
+        ["crease 0-1 10", "G"],
+        ["scheme sqrt3", "C"],
+      ]);
+    } finally {
+      here.site.extra.delete("/web/compute.js");
     }
   });
 

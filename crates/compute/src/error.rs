@@ -1,5 +1,7 @@
 //! Why a refinement is not put together: tables that are wrong, or more than the adapter takes. Nothing was made then.
 
+use limn_mesh::RefineError;
+
 /// An error of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
@@ -41,4 +43,7 @@ pub enum Error {
         /// Its number.
         at: u64,
     },
+    /// What the CPU refuses too.
+    #[error(transparent)]
+    Refine(#[from] RefineError),
 }

@@ -8,10 +8,8 @@
 //! Quads have corners as well where those carry texture coordinates or colours, which lie in a buffer beside (12 bytes a corner). A piece is a
 //! buffer of its own, so that no binding grows with the level. Limit: faces are not hidden.
 
-use super::Rows;
 use crate::Error;
 use crate::program::{Builder, Id, Role};
-use limn_mesh::Faces;
 use std::ops::Range;
 
 /// Largest piece: as for what is uploaded.
@@ -73,23 +71,6 @@ impl Drawn {
             first = end;
         }
         Ok(if triangles { Drawn::Corners { pieces, carries } } else { Drawn::Quads { kinds, pieces } })
-    }
-
-    /// What the listed faces of `rows` are drawn from: shared quads with their indices, or room for the corners of triangles.
-    pub(crate) fn listed(builder: &mut Builder, rows: &Rows<'_>) -> Result<Drawn, Error> {
-        let (Faces::Quads(quads), Some(kinds)) = (rows.faces, rows.parents) else {
-            let (corners, faces) = (rows.faces.corners().len() as u64, rows.faces.count() as u64);
-            return Drawn::fused(builder, true, [0; 2], corners.saturating_sub(2 * faces), [false; 2]);
-        };
-        let drawn = Drawn::fused(builder, false, kinds, quads.len() as u64 / 4, [false; 2])?;
-        for Piece { faces, buffer, .. } in drawn.pieces() {
-            let mine = quads.chunks_exact(4).skip(faces.start as usize).take(faces.len());
-            let indices = mine.flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).flat_map(u32::to_ne_bytes);
-            if let Some(buffer) = builder.buffers.get_mut(*buffer as usize) {
-                buffer.contents = indices.collect();
-            }
-        }
-        Ok(drawn)
     }
 
     /// The faces of each piece, and its buffer.

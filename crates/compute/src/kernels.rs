@@ -85,10 +85,14 @@ pub(crate) enum Kernel {
     Extras(Variant),
     /// Points from rows; whether constants move them.
     Rows { moved: bool },
+    /// How large these constants are for the cage as it is.
+    Measure,
     /// Normals of listed faces.
     ListedFaces,
     /// Normals of vertices from these.
     ListedNormals,
+    /// Normals of vertices by tangents of the limit.
+    LimitNormals,
     /// Corners of triangles with both.
     ListedCorners,
     /// Colours in four bytes.
@@ -137,8 +141,10 @@ impl Kernel {
         let mut all = vec![
             Kernel::Rows { moved: false },
             Kernel::Rows { moved: true },
+            Kernel::Measure,
             Kernel::ListedFaces,
             Kernel::ListedNormals,
+            Kernel::LimitNormals,
             Kernel::ListedCorners,
             Kernel::Colors,
             Kernel::Bounds,
@@ -180,8 +186,10 @@ impl Kernel {
     pub fn entry(self) -> &'static str {
         match self {
             Kernel::Points(_) | Kernel::Rows { .. } => "points",
+            Kernel::Measure => "measure",
             Kernel::Split(_) => "split",
             Kernel::Normals(_) | Kernel::ListedNormals => "normals",
+            Kernel::LimitNormals => "limit_normals",
             Kernel::ListedCorners => "listed_corners",
             Kernel::Colors => "colors",
             Kernel::QuadCorners(_) => "quad_corners",
@@ -206,10 +214,16 @@ impl Kernel {
         let work = wgsl!("shaders/work.wgsl");
         let variant = match self {
             Kernel::Rows { moved } => {
-                return format!("const MOVED = {moved};\n{work}{}", wgsl!("shaders/rows.wgsl"));
+                let none = "fn moved(i: u32) -> vec4<f32> { return vec4(0.0); }\n";
+                let moves = if moved { wgsl!("shaders/moved.wgsl") } else { none };
+                return format!("{work}{moves}{}", wgsl!("shaders/rows.wgsl"));
             }
             Kernel::ListedFaces | Kernel::ListedNormals | Kernel::ListedCorners => {
                 return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/listed.wgsl"));
+            }
+            Kernel::Measure => return format!("{work}{}", wgsl!("shaders/scale.wgsl")),
+            Kernel::LimitNormals => {
+                return format!("{work}{}{}", wgsl!("shaders/pack.wgsl"), wgsl!("shaders/limit.wgsl"));
             }
             Kernel::Colors => {
                 return format!("{work}{}{}", wgsl!("shaders/srgb.wgsl"), wgsl!("shaders/colors.wgsl"));
@@ -234,7 +248,7 @@ impl Kernel {
             wgsl!("shaders/level.wgsl")
         );
         let creases = wgsl!("shaders/creases.wgsl");
-        let pack = wgsl!("shaders/pack.wgsl");
+        let draw = [wgsl!("shaders/pack.wgsl"), wgsl!("shaders/corner.wgsl")].concat();
         let turns = wgsl!("shaders/turns.wgsl");
         match (self, split) {
             (Kernel::Points(_), Split::Quad) => head + creases + wgsl!("shaders/quads.wgsl"),
@@ -253,10 +267,10 @@ impl Kernel {
             (Kernel::Split(_), Split::Triangle) => head + creases + wgsl!("shaders/split_triangles.wgsl"),
             (Kernel::Split(_), Split::Sqrt3) => head + wgsl!("shaders/split_sqrt3.wgsl"),
             (Kernel::Split(_), Split::Dual) => head + turns + wgsl!("shaders/split_dual.wgsl"),
-            (_, Split::Quad) => head + pack + wgsl!("shaders/finish_quads.wgsl"),
-            (_, Split::Triangle) => head + pack + wgsl!("shaders/finish_triangles.wgsl"),
-            (_, Split::Sqrt3) => head + pack + wgsl!("shaders/finish_sqrt3.wgsl"),
-            (_, Split::Dual) => head + turns + pack + wgsl!("shaders/finish_dual.wgsl"),
+            (_, Split::Quad) => head + &draw + wgsl!("shaders/finish_quads.wgsl"),
+            (_, Split::Triangle) => head + &draw + wgsl!("shaders/finish_triangles.wgsl"),
+            (_, Split::Sqrt3) => head + &draw + wgsl!("shaders/finish_sqrt3.wgsl"),
+            (_, Split::Dual) => head + turns + &draw + wgsl!("shaders/finish_dual.wgsl"),
         }
     }
 
@@ -270,8 +284,11 @@ impl Kernel {
             Kernel::Normals(_) => [LEVEL, &[Write]],
             Kernel::Faces(_) | Kernel::QuadCorners(_) => [LEVEL, &[Write, Write]],
             Kernel::Extras(_) => [LEVEL, &[Read, Write]],
-            Kernel::Rows { .. } => [&[Uniform, Read, Read, Read], &[Read, Write]],
+            Kernel::Rows { moved: false } => [&[Uniform, Read, Read], &[Read, Write]],
+            Kernel::Rows { moved: true } => [&[Uniform, Read, Read, Read], &[Read, Write, Read]],
+            Kernel::Measure => [&[Uniform, Read], &[Read, Write]],
             Kernel::ListedFaces | Kernel::ListedNormals => [&[Uniform, Read, Read, Read, Read], &[Write, Write]],
+            Kernel::LimitNormals => [&[Uniform, Read, Read], &[Read, Write]],
             Kernel::Colors | Kernel::Bounds => [&[Uniform], &[Read, Write]],
             Kernel::Patches(..) => [LEVEL, &[Read, Write]],
             Kernel::Climbing(what, variant) => what.kernel(variant).access(),

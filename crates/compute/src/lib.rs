@@ -11,25 +11,31 @@
 //! Three ways make the points. *The fused gather* (`fused.rs`): hand-written rules that find a level's neighbours through `twin`
 //! and `origin` alone, so a level costs one dispatch and no atomics; half-edges of the next level are arithmetic (Dupuy & Vanhoey
 //! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Patches* (`patch.rs`): from level 5 on ([`path`]) the last levels of Catmull-Clark, Loop and linear at
-//! once, from the rings of the faces of level 1, with no level between. *Rows* (`rows.rs`): every other scheme's weights as sparse
-//! rows, one dispatch a pass. All number child vertices as `limn-mesh` does, so what was made here and there can be compared, drawn
+//! once, from the rings of the faces of level 1, with no level between. *Rows* (`rows.rs`): any plan's weights as sparse
+//! rows, one dispatch a pass; they cost the CPU more to make than the level itself, and pay where the cage moves. All number child vertices as `limn-mesh` does, so what was made here and there can be compared, drawn
 //! and exported alike.
 //!
 //! Cost on the GPU, Catmull-Clark, bytes a face of the last level: 16 written for points, 4 for normals and, once, 24 for
 //! indices; about 16 read of the level before. Memory besides: a quarter, a sixteenth .. of 16 for points and 36 for half-edges.
 //! Limits: a level's points, and half-edges of the one before, must fit one binding ([`Error::TooLarge`] says by how much they
-//! do not); indices and corners are made in pieces. Several materials and texture coordinates where children keep their parents' corners; no hidden faces. The GPU's sums differ from the
+//! do not); indices and corners are made in pieces. [`program()`] says what has no kernels.
+//! The GPU's sums differ from the
 //! CPU's by their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
 
 mod cage;
+#[path = "../../render/src/edge_flags.rs"]
+mod edge_flags;
 mod error;
 mod finish;
 mod fused;
 mod kernels;
+mod listed;
 mod patch;
 mod plan;
 pub mod program;
 mod rows;
+#[path = "../../render/src/srgb.rs"]
+mod srgb;
 #[path = "../../render/src/wgsl.rs"]
 mod wgsl;
 
@@ -41,7 +47,7 @@ pub use kernels::Access;
 pub use patch::patched;
 pub use plan::{Path, Tables, path, program, program_by, recorded, rules};
 pub use program::{Limits, Program, bounds};
-pub use rows::{EdgeFlags, Pass, RowLevel, Rows, rows};
+pub use rows::{Pass, RowLevel, Rows, Tangents, by_rows, rows};
 
 use kernels::{Kernel, Level};
 use program::{Builder, Dispatch, Id, Role};

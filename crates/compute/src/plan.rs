@@ -11,7 +11,7 @@
 use crate::fused::{Beside, beside};
 use crate::kernels::Split;
 use crate::program::{Limits, Program};
-use crate::rows::{Pass, RowLevel};
+use crate::rows::{Pass, RowLevel, Tangents};
 use crate::{Cage, Error, Rules, Scheme, Values, fused, patched};
 use limn_mesh::refine::{Recorded, RefineError, record};
 use limn_mesh::sink::Source;
@@ -127,10 +127,15 @@ pub fn path(level: u32) -> Path {
     if level < PATCHED { Path::Fused } else { Path::Patches }
 }
 
-/// The program of a plan that is shown as a whole: none where the CPU has to do it, because the scheme has no kernels of its own on
-/// such a mesh, or faces are hidden, or what goes with points does not go this way: texture coordinates with creases, by rules that keep
-/// seams straight, or of dual splits and the square root; parts of these, or scattered ones. `parts` are those of the file's
-/// faces, empty if there is one.
+/// The program of a plan by kernels made for its scheme, with texture coordinates, colours and parts. `parts` are those of the file's faces,
+/// empty if there is one. None of these, which [`crate::by_rows`] makes, or the CPU:
+///
+/// - schemes without kernels ([`rules`]): all but Catmull-Clark, linear, Loop, both Butterflies, sqrt3, Doo-Sabin and its midpoint variant;
+///   creases of both Butterflies and sqrt3; rims of sqrt3 and Doo-Sabin, and there vertices of two faces;
+/// - several schemes one after the other, fairing, the limit; edges that three faces share; level 0;
+/// - faces that are not shown: holes, and the rim where the boundary rule is none;
+/// - of dual splits and sqrt3 texture coordinates, colours and parts; of the others parts that would take more than 1,000 draws;
+/// - texture coordinates where a semi-sharp edge meets the end of a seam, or seams that stay straight beside vertices that stay.
 ///
 /// # Errors
 /// As [`fused`].
@@ -166,24 +171,47 @@ pub fn program_by(
         return fused(&cage, &rules, plan.level, Values::Points, limits).map(Some);
     }
     let keeps_corners = matches!(split, Split::Quad | Split::Triangle);
-    let straight = matches!(plan.rules.face_varying, FaceVarying::Boundaries | FaceVarying::All);
-    if !keeps_corners || mesh.uv.is_some() && (straight || cage.is_creased()) {
+    if !keeps_corners || mesh.uv.is_some() && !has_kernels_for_uv(mesh, plan) {
         return Ok(None);
     }
     let Some(runs) = runs(mesh, parts, split, plan.level) else { return Ok(None) };
     let colors = (!mesh.colors.is_empty()).then(|| Beside { cage, rules, values: mesh.colors.clone() });
     let pins = mesh.pinned_uv(&plan.rules);
     let channel = mesh.uv.as_ref().map(|uv| (uv, Tables::on(&uv.topology)));
-    let uv = channel.as_ref().map(|(uv, tables)| Beside {
-        cage: Cage { stays: &pins, ..tables.on_half_edges(&uv.topology) },
+    // The mesh's own half-edges and those of texture coordinates have the same numbers.
+    let own = |u: u32| mesh.topology.origin(u) as usize;
+    let sharp = |start: &u32| mesh.vertex_sharpness.get(own(*start)).copied().unwrap_or(0.0);
+    let uv_sharpness: Vec<f32> = channel.iter().flat_map(|(_, tables)| tables.start.iter().map(sharp)).collect();
+    let linear = if split == Split::Quad { Scheme::Quads } else { Scheme::Triangles };
+    let uv = channel.as_ref().map(|(uv, on)| Beside {
+        cage: Cage {
+            stays: &pins,
+            sharpness: &tables.sharpness,
+            vertex_sharpness: &uv_sharpness,
+            ..on.on_half_edges(&uv.topology)
+        },
         // Corners are among the pins, and no others.
-        rules: Rules { corners: false, ..rules },
+        rules: Rules {
+            scheme: if plan.rules.face_varying == FaceVarying::All { linear } else { rules.scheme },
+            corners: false,
+            ..rules
+        },
         values: uv.values.iter().map(|&[u, v]| [u, v, 0.0, 0.0]).collect(),
     });
     let mut program = beside((&cage, &rules), [uv.as_ref(), colors.as_ref()], plan.level, limits)?;
     let elements = if split == Split::Quad { 6 } else { 3 };
     program.runs = runs.into_iter().map(|[part, faces]| [part, faces * elements]).collect();
     Ok(Some(program))
+}
+
+/// Whether what holds of texture coordinates is seen from their own half-edges, of a split that keeps corners.
+fn has_kernels_for_uv(mesh: &Mesh, plan: &Plan) -> bool {
+    match plan.rules.face_varying {
+        FaceVarying::All => true,
+        // Cuts between copies of a vertex are no seams.
+        FaceVarying::Boundaries if mesh.sharp.contains(&true) => false,
+        _ => !mesh.has_creases_beyond_seams(&plan.rules),
+    }
 }
 
 /// Parts in the order of a level's faces, and how many faces each run has; none if there are too many runs to be drawn one by one.
@@ -230,7 +258,7 @@ fn runs(mesh: &Mesh, parts: &[u32], split: Split, level: u32) -> Option<Vec<[u32
 pub fn recorded(mesh: &Mesh, plan: &Plan) -> Result<Vec<RowLevel>, RefineError> {
     let mut levels: Vec<RowLevel> = Vec::new();
     record(mesh, plan, |what| match what {
-        Recorded::Level(vertices) => levels.push(RowLevel { passes: Vec::new(), vertices }),
+        Recorded::Level(vertices) => levels.push(RowLevel { vertices, ..RowLevel::default() }),
         Recorded::Row(child, weights, offset) => {
             let Some(level) = levels.last_mut() else { return };
             let goes_on = level.passes.last().is_some_and(|pass| {
@@ -252,6 +280,15 @@ pub fn recorded(mesh: &Mesh, plan: &Plan) -> Result<Vec<RowLevel>, RefineError> 
                 pass.moves.push(offset.map(|x| x as f32));
             }
             pass.offsets.push(pass.entries.len() as u32);
+        }
+        Recorded::Tangents(v, weights) => {
+            let Some(level) = levels.last_mut() else { return };
+            let Tangents { offsets, entries } = &mut level.tangents;
+            offsets.resize(v as usize + 1, entries.len() as u32);
+            entries.extend(
+                weights.iter().map(|&(at, [a, b], sector)| [at, (a as f32).to_bits(), (b as f32).to_bits(), sector]),
+            );
+            offsets.push(entries.len() as u32);
         }
     })?;
     for pass in levels.iter_mut().flat_map(|l| &mut l.passes).filter(|p| !p.moves.is_empty()) {

@@ -5,14 +5,15 @@
 //! ```
 //!
 //! Rows depend on connectivity and marks alone, so they stay on the GPU while the cage is edited. Memory: 8 bytes a weight and 4 a
-//! row; a row of a regular Catmull-Clark vertex has nine. Limits: the rows of a pass must fit one binding; polygons of the last level
-//! are drawn as fans.
+//! row; a row of a regular Catmull-Clark vertex has nine. To make them costs the CPU 50 to 200 ns a row, several times what refining does, so they pay where the
+//! cage will move. Limits: the rows of a pass must fit one binding, and [`by_rows`] makes them for a million vertices at most.
 
-use super::finish::Drawn;
 use super::kernels::{Kernel, Level};
-use super::program::{Builder, Dispatch, Limits, Program, Role};
-use super::{Error, Values, colors};
-use limn_mesh::Faces;
+use super::program::{Builder, Dispatch, Id, Limits, Program, Role};
+use super::{Error, listed, recorded};
+use limn_mesh::plan::mean_edge;
+use limn_mesh::{Connectivity, Mesh, Plan, Refined, predict, refine};
+use std::sync::Arc;
 
 /// The rows of children `first ..`, one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,28 +41,32 @@ pub struct RowLevel {
     pub passes: Vec<Pass>,
     /// Vertices of the next level.
     pub vertices: u32,
+    /// Where they go to the limit, their tangents there.
+    pub tangents: Tangents,
 }
 
-/// A plan as rows, and the faces of its last level.
+/// Two tangents of every vertex, as weights on the points of the level before. Empty if there are none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tangents {
+    /// Where the entries of each vertex begin, and their number at the end: one more than vertices.
+    pub offsets: Vec<u32>,
+    /// A vertex of the level before, the bits of its weights in both tangents, and the sector of the vertex's neighbourhood that these are
+    /// of, in order of sectors.
+    pub entries: Vec<[u32; 4]>,
+}
+
+/// A plan as rows, and its last level as the CPU made it: faces, and what they carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'a> {
-    /// Vertices of level 0.
-    pub cage: u32,
+    /// Level 0.
+    pub mesh: &'a Mesh,
     /// Its steps.
     pub levels: &'a [RowLevel],
-    /// The last level's faces.
-    pub faces: &'a Faces,
-    /// As in `limn_render::SurfaceData::parents`.
-    pub parents: Option<[u32; 2]>,
-    /// What kind each face is, as in `limn_render::SurfaceData::kind_of`; empty if none is.
-    pub kinds: &'a [u8],
-    /// The bits of a triangle's edges.
-    pub flags: EdgeFlags,
+    /// What they make.
+    pub level: &'a Refined,
+    /// The parts of the file's faces, empty if there is one.
+    pub parts: &'a [u32],
 }
-
-/// `limn_render::corners::edge_flags`: which edges of a triangle are drawn, from its corners' numbers in their polygon and in the
-/// level, the polygon's corners, and the parent level's ranges.
-pub type EdgeFlags = fn([u32; 3], [u32; 3], u32, Option<[u32; 2]>) -> u32;
 
 impl RowLevel {
     /// That every row gives a child of this level from what is there.
@@ -92,51 +97,33 @@ impl RowLevel {
                 return Err(Error::Index { corner: at as u64, index, vertices: before.max(self.vertices).into() });
             }
         }
-        Ok(())
-    }
-}
-
-/// The faces around every vertex: where each run begins and ends, and the faces.
-fn around(faces: &Faces, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Error> {
-    let mut turns = vec![0u32; vertices as usize + 2];
-    for (corner, &v) in (0..).zip(faces.corners()) {
-        match turns.get_mut(v as usize + 2) {
-            Some(n) if v < vertices => *n += 1,
-            _ => return Err(Error::Index { corner, index: v, vertices: vertices.into() }),
+        let Tangents { offsets, entries } = &self.tangents;
+        let found = offsets.len() as u64;
+        let expected = u64::from(self.vertices) + 1;
+        let ends = offsets.is_sorted() && offsets.last().is_none_or(|&n| n as usize == entries.len());
+        if found > 0 && found != expected || !ends {
+            return Err(Error::Mismatch { what: "tangents", found, expected });
         }
-    }
-    for v in 2..turns.len() {
-        turns[v] += turns[v - 1];
-    }
-    let mut spokes = vec![0u32; faces.corners().len()];
-    for f in 0..faces.count() {
-        for &v in faces.face(f) {
-            // Where the next of v goes; in the end every run's start has moved to its end.
-            let at = &mut turns[v as usize + 1];
-            if let Some(slot) = spokes.get_mut(*at as usize) {
-                *slot = f as u32;
+        match entries.iter().position(|entry| entry[0] >= before) {
+            Some(at) => {
+                let index = entries.get(at).map_or(0, |e| e[0]);
+                Err(Error::Index { corner: at as u64, index, vertices: before.into() })
             }
-            *at += 1;
+            None => Ok(()),
         }
     }
-    turns.truncate(vertices as usize + 1);
-    Ok((turns, spokes))
 }
 
-/// Every triangle of the faces: three vertices, the face, and the bits of its edges ([`crate::corners`]). Polygons are fans.
-fn triangles(rows: &Rows<'_>) -> Vec<[u32; 5]> {
-    let mut out = Vec::new();
-    for f in 0..rows.faces.count() {
-        let polygon = rows.faces.face(f);
-        let kind = u32::from(rows.kinds.get(f).copied().unwrap_or(0) & 3) << 6;
-        for (i, pair) in polygon.windows(2).enumerate().skip(1) {
-            let (&[b, c], Some(&a)) = (pair, polygon.first()) else { continue };
-            let local = [0, i as u32, i as u32 + 1];
-            let flags = (rows.flags)(local, [a, b, c], polygon.len() as u32, rows.parents) | kind;
-            out.push([a, b, c, f as u32, flags]);
-        }
-    }
-    out
+/// Where the scale of constants is found: those that a rule adds are so many mean lengths of the cage's edges, wherever the cage has moved.
+fn measured(builder: &mut Builder, mesh: &Mesh, cage: Id, each: &mut Vec<Dispatch>) -> Result<Id, Error> {
+    let t = &mesh.topology;
+    let ends = |e: u32| [t.edge_half_edge(e), t.next(t.edge_half_edge(e))].map(|h| t.origin(h));
+    let edges: Vec<[u32; 2]> = (0..t.edges()).map(ends).collect();
+    let edges = builder.filled("edges", &[&edges])?;
+    let scale = builder.make("scale", 16, Role::Work)?;
+    let numbers = Level { end: 1, rest: t.edges(), a: mean_edge(mesh) as f32, ..Level::default() };
+    each.extend(builder.step(Kernel::Measure, &numbers, &[edges], &[cage, scale]));
+    Ok(scale)
 }
 
 /// The program that refines by rows. Cost: linear in the last level.
@@ -144,82 +131,72 @@ fn triangles(rows: &Rows<'_>) -> Vec<[u32; 5]> {
 /// # Errors
 /// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
 /// leave the adapter's limits.
-pub fn rows(rows: &Rows<'_>, values: Values, limits: Limits) -> Result<Program, Error> {
-    let mut before = rows.cage;
+pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
+    let cage_vertices = rows.mesh.topology.vertices();
+    let mut before = cage_vertices;
     for level in rows.levels {
         level.check(before)?;
         before = level.vertices;
     }
+    let (found, expected) = (rows.level.points.len() as u64, before.into());
+    if found != expected {
+        return Err(Error::Mismatch { what: "points of the last level", found, expected });
+    }
     let mut builder = Builder::new(limits);
-    let cage = builder.make("cage", 16 * u64::from(rows.cage), Role::Cage)?;
+    let cage = builder.make("cage", 16 * u64::from(cage_vertices), Role::Cage)?;
     let mut each: Vec<Dispatch> = Vec::new();
+    let is_moved = rows.levels.iter().flat_map(|level| &level.passes).any(|pass| !pass.moves.is_empty());
+    let scale = if is_moved { Some(measured(&mut builder, rows.mesh, cage, &mut each)?) } else { None };
     let mut points = cage;
+    let mut limit = None;
     for (k, level) in rows.levels.iter().enumerate() {
         let role = if k + 1 == rows.levels.len() { Role::Vertices } else { Role::Work };
         let new = builder.make("the vertices", 16 * u64::from(level.vertices), role)?;
         for pass in &level.passes {
-            let read = [
-                builder.filled("rows", &[&pass.offsets])?,
-                builder.filled("weights", &[&pass.entries])?,
-                builder.filled("moves", &[&pass.moves])?,
-            ];
+            let mut read =
+                vec![builder.filled("rows", &[&pass.offsets])?, builder.filled("weights", &[&pass.entries])?];
+            let scale = scale.filter(|_| !pass.moves.is_empty());
+            if scale.is_some() {
+                read.push(builder.filled("moves", &[&pass.moves])?);
+            }
             let end = pass.offsets.len().saturating_sub(1) as u32;
             let numbers = Level { first_face: pass.first, end, ..Level::default() };
-            // Constants move points alone.
-            let kernel = Kernel::Rows { moved: !pass.moves.is_empty() && values == Values::Points };
-            each.extend(builder.step(kernel, &numbers, &read, &[points, new]));
+            let kernel = Kernel::Rows { moved: scale.is_some() };
+            let work: Vec<Id> = [points, new].into_iter().chain(scale).collect();
+            each.extend(builder.step(kernel, &numbers, &read, &work));
+        }
+        if !level.tangents.offsets.is_empty() {
+            let read = [
+                builder.filled("tangents of vertices", &[&level.tangents.offsets])?,
+                builder.filled("tangents", &[&level.tangents.entries])?,
+            ];
+            limit = Some((read, points));
         }
         points = new;
     }
-    if values == Values::Colors {
-        return colors(builder, (cage, rows.cage), (Vec::new(), each), (points, before));
-    }
-    let (turns, spokes) = around(rows.faces, before)?;
-    let faces = rows.faces.count() as u32;
-    let offsets: Vec<u32> = match rows.faces {
-        Faces::Triangles(_) => (0..=faces).map(|f| 3 * f).collect(),
-        Faces::Quads(_) => (0..=faces).map(|f| 4 * f).collect(),
-        Faces::Polygons { offsets, .. } => offsets.to_vec(),
-    };
-    let read = [
-        builder.filled("faces", &[&offsets])?,
-        builder.filled("corners", &[rows.faces.corners()])?,
-        builder.filled("turns", &[&turns])?,
-        builder.filled("spokes", &[&spokes])?,
-    ];
-    let normals = builder.make("normals", 16 * u64::from(faces), Role::Work)?;
-    let work = [points, normals];
-    for (kernel, end) in [(Kernel::ListedFaces, faces), (Kernel::ListedNormals, before)] {
-        each.extend(builder.step(kernel, &Level { end, ..Level::default() }, &read, &work));
-    }
-    let drawn = Drawn::listed(&mut builder, rows)?;
-    if let Drawn::Corners { pieces, .. } = &drawn {
-        let table = triangles(rows);
-        for piece in pieces {
-            let mine = table.get(piece.faces.start as usize..piece.faces.end as usize).unwrap_or(&[]);
-            let mine = builder.filled("triangles", &[mine])?;
-            let [a, b, c, d] = read;
-            let numbers = Level { end: piece.faces.len() as u32, ..Level::default() };
-            let work = [points, normals, piece.buffer];
-            each.extend(builder.step(Kernel::ListedCorners, &numbers, &[a, b, c, d, mine], &work));
-        }
-    }
+    let (drawn, runs) = listed::drawn(&mut builder, (rows.level, rows.parts), (points, before), limit, &mut each)?;
     let bounds = Some(builder.bounds(points, before, &mut each)?);
-    let (once, cage_vertices) = (Vec::new(), rows.cage);
+    let once = Vec::new();
     let (shaders, buffers) = (builder.shaders(), builder.buffers);
     let (vertices, count, packed) = (points, before, None);
-    Ok(Program {
-        buffers,
-        shaders,
-        once,
-        each,
-        cage,
-        cage_vertices,
-        vertices,
-        count,
-        drawn,
-        packed,
-        bounds,
-        runs: Vec::new(),
-    })
+    Ok(Program { buffers, shaders, once, each, cage, cage_vertices, vertices, count, drawn, packed, bounds, runs })
+}
+
+/// Vertices of the last level that rows are made for, at most: a million takes 0.2 to 0.6 s, and 150 to 450 MB on the GPU.
+const MOST: u64 = 1 << 20;
+
+/// The program that makes of `mesh` by rows what the CPU makes of it, for any plan whose cage moves: with texture coordinates, colours,
+/// parts, holes, ties, fairing, and several schemes. None at level 0, and for levels of more than a million vertices. Cost: that of
+/// refining once on the CPU, and of [`recorded`].
+///
+/// # Errors
+/// [`Error::Refine`] where the CPU cannot refine it either; as [`rows`].
+pub fn by_rows(mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], limits: Limits) -> Result<Option<Program>, Error> {
+    let fits = predict(mesh, plan)?.is_some_and(|p| p.counts.vertices <= MOST);
+    if plan.level == 0 || !fits {
+        return Ok(None);
+    }
+    let level = &refine(mesh, plan, u64::MAX)?;
+    let levels = &recorded(mesh, plan)?;
+    rows(&Rows { mesh, levels, level, parts }, limits).map(Some)
 }

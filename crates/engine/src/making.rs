@@ -118,13 +118,7 @@ impl Made {
         };
         let part_of = |f: usize| self.parts.of_face.get(r.face_source(f as u32) as usize).copied().unwrap_or(0);
         let mut data = SurfaceData::new(&r.points, self.normals(), faces);
-        data.parents = match (r.parent_ranges, r.level) {
-            (Some(ranges), _) => Some(ranges),
-            (None, 0) => None,
-            // Quads of another split: nothing tells their corners apart.
-            (None, _) if matches!(r.faces, F::Quads(_)) => None,
-            (None, _) => Some([r.vertex_parents; 2]),
-        };
+        data.parents = r.parents();
         data.uv = r.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
         data.colors = &r.colors;
         data.parts = &self.parts.list;

@@ -66,16 +66,29 @@ impl Kernel {
             .map_err(|e| e.to_string())
     }
 
-    /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension. None
-    /// where the CPU has to refine: `limn_compute::program`, which takes the `parts` of the file's faces.
+    /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension: by
+    /// kernels made for its scheme (`limn_compute::program`, which takes the `parts` of the file's faces), and with `rows` by rows
+    /// where there are none (`limn_compute::by_rows`). Rows cost more to make than the level itself costs the CPU: they are for cages that
+    /// will move. None where the CPU has to refine.
     ///
     /// # Errors
     /// One sentence: the bytes are no plan, or there is no mesh, or a buffer would be too large.
-    pub fn draw(&self, plan: &[u8], buffer: f64, groups: u32, parts: &[u32]) -> Result<Option<Drawing>, String> {
+    pub fn draw(
+        &self,
+        plan: &[u8],
+        buffer: f64,
+        groups: u32,
+        parts: &[u32],
+        rows: bool,
+    ) -> Result<Option<Drawing>, String> {
         let mesh = self.mesh.as_ref().ok_or("there is no mesh to refine")?;
         let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
-        let program = limn_compute::program(mesh, &plan, parts, limits(buffer, groups)).map_err(|e| e.to_string())?;
-        Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
+        let limits = limits(buffer, groups);
+        let made = match limn_compute::program(mesh, &plan, parts, limits) {
+            Ok(None) if rows => limn_compute::by_rows(mesh, &plan, parts, limits),
+            made => made,
+        };
+        Ok(made.map_err(|e| e.to_string())?.map(|program| Drawing::new(program, &mesh.positions)))
     }
 }
 

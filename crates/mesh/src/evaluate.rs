@@ -45,7 +45,7 @@ pub fn evaluate_creased<const N: usize>(
     inspect: impl FnMut(&Level<'_>, Option<&Creases>),
 ) -> Result<Vec<[f64; N]>, RefineError> {
     let beyond = if plan.projects() { plan.beyond(mesh)? } else { None };
-    run(mesh, plan, values, (inspect, |_| ()), beyond, |scheme, on, points| {
+    run(mesh, plan, values, (inspect, |_| ()), beyond, |scheme, on, points, _| {
         let mut projector = Projector::new(scheme, on);
         *points = (0..points.len() as u32).map(|v| projector.mask(v).point(|v| points[v as usize])).collect();
     })
@@ -60,7 +60,7 @@ pub fn evaluate_limit(mesh: &Mesh, plan: &Plan, points: &[[f64; 3]]) -> Result<L
     let mut found = Limit::default();
     let plan = Plan { limit: false, ..plan.clone() };
     let beyond = plan.beyond(mesh)?;
-    run(mesh, &plan, points, (|_, _| (), |_| ()), beyond, |scheme, on, points| found = limit(scheme, on, points))?;
+    run(mesh, &plan, points, (|_, _| (), |_| ()), beyond, |scheme, on, points, _| found = limit(scheme, on, points))?;
     mesh.tie(&admit(mesh, &plan, u64::MAX)?, plan.level, &mut found.points);
     Ok(found)
 }
@@ -68,20 +68,33 @@ pub fn evaluate_limit(mesh: &Mesh, plan: &Plan, points: &[[f64; 3]]) -> Result<L
 /// A plan written down, one thing after the other.
 #[derive(Clone, Copy, Debug)]
 pub enum Recorded<'a> {
-    /// What follows makes a level of so many vertices of the one before: a step of a scheme, or half a step of fairing.
+    /// What follows makes a level of so many vertices of the one before: a step of a scheme, half a step of fairing, or the limit.
     Level(u32),
     /// A vertex of it: its weights, and what its point is moved by. Sources that are children came before.
     Row(u32, &'a [(Source, f64)], [f64; 3]),
+    /// The tangents of a vertex in the limit, weights on the points before it: [`crate::limit::Mask::tangents`].
+    Tangents(u32, &'a [(u32, [f64; 2], u32)]),
 }
 
 /// Hands the rows of `plan` to `take`, in an order in which they can be worked off; copies that are tied are rows of their
-/// leader. A limit at the end is left out. Cost: about 200 ns a row.
+/// leader. Cost: about 200 ns a row, and in the limit 300 more or what its analysis takes.
 ///
 /// # Errors
 /// [`RefineError`], with no budget.
 pub fn record(mesh: &Mesh, plan: &Plan, take: impl FnMut(Recorded<'_>)) -> Result<(), RefineError> {
     let values = vec![[0.0; 0]; mesh.topology.vertices() as usize];
-    run(mesh, plan, &values, (|_, _| (), take), None, |_, _, _| ()).map(drop)
+    let beyond = if plan.projects() { plan.beyond(mesh)? } else { None };
+    let made = run(mesh, plan, &values, (|_, _| (), take), beyond, |scheme, on, points, note| {
+        note(Recorded::Level(points.len() as u32));
+        let mut projector = Projector::new(scheme, on);
+        for v in 0..points.len() as u32 {
+            let mask = projector.mask(v);
+            let row: Vec<_> = mask.point.iter().map(|&(v, w)| (Source::Vertex(v), w)).collect();
+            note(Recorded::Row(v, &row, [0.0; 3]));
+            note(Recorded::Tangents(v, &mask.tangents));
+        }
+    });
+    made.map(drop)
 }
 
 /// Says which vertices of a level take the points of others.
@@ -104,7 +117,7 @@ fn run<const N: usize>(
     values: &[[f64; N]],
     (mut inspect, mut note): (impl FnMut(&Level<'_>, Option<&Creases>), impl FnMut(Recorded<'_>)),
     beyond: Option<Step>,
-    mut last: impl FnMut(&'static Entry, (&Level<'_>, Split, Tags<'_>), &mut Vec<[f64; N]>),
+    mut last: impl FnMut(&'static Entry, (&Level<'_>, Split, Tags<'_>), &mut Vec<[f64; N]>, &mut dyn FnMut(Recorded<'_>)),
 ) -> Result<Vec<[f64; N]>, RefineError> {
     let steps = admit(mesh, plan, u64::MAX)?;
     let kept = plan.kept(mesh);
@@ -135,8 +148,9 @@ fn run<const N: usize>(
         let Some(step) = steps.get(at as usize) else {
             if let Some(step) = &beyond {
                 let tags = Tags { knots: &knots, ..plan.tags(step, at, sharp, creases.as_ref()) };
-                last(step.scheme, (&level, step.split, tags), &mut old);
+                last(step.scheme, (&level, step.split, tags), &mut old, &mut note);
                 mesh.tie(&steps, at, &mut old);
+                record_ties(mesh, &steps, at, old.len(), &mut note);
             }
             break;
         };

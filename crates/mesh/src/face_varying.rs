@@ -29,6 +29,8 @@
 //! this by what they are; where two values take turns around a vertex (a b a b) OpenSubdiv counts three or four, by the face
 //! that it begins with.
 
+#[cfg(feature = "full")]
+use crate::copies;
 use crate::crease::halves;
 use crate::marks::INFINITE;
 use crate::mesh::{Mesh, UvChannel};
@@ -62,6 +64,11 @@ impl Mesh {
     /// The texture coordinates that stay where they are, at every level unless the rule is `boundaries`; empty if there are none.
     pub fn pinned_uv(&self, rules: &Rules) -> Vec<bool> {
         self.uv.as_ref().map_or_else(Vec::new, |uv| pins(self, uv, rules).0)
+    }
+
+    /// Whether some texture coordinate has to know edges that its own half-edges do not see: semi-sharp ones at an end of a seam.
+    pub fn has_creases_beyond_seams(&self, rules: &Rules) -> bool {
+        self.uv.as_ref().is_some_and(|uv| !copies::of(self, &uv.topology, rules.face_varying).is_empty())
     }
 }
 

@@ -229,8 +229,8 @@ impl Plan {
     }
 }
 
-/// The mean length of a mesh's edges.
-fn mean_edge(mesh: &Mesh) -> f64 {
+/// The mean length of a mesh's edges. Cost: linear.
+pub fn mean_edge(mesh: &Mesh) -> f64 {
     let t = &mesh.topology;
     let length = |e: u32| {
         let h = t.edge_half_edge(e);

@@ -144,6 +144,18 @@ impl Refined {
         self.mesh.face_source[f as usize]
     }
 
+    /// What is known of the level before by a vertex's number alone: where face points begin, and edge points; none where nothing
+    /// tells corners apart, and all edges count as its.
+    pub fn parents(&self) -> Option<[u32; 2]> {
+        match (self.parent_ranges, self.level) {
+            (Some(ranges), _) => Some(ranges),
+            (None, 0) => None,
+            // Quads of another split.
+            (None, _) if matches!(self.faces, Faces::Quads(_)) => None,
+            (None, _) => Some([self.vertex_parents; 2]),
+        }
+    }
+
     /// The mesh that was refined.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh

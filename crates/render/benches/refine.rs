@@ -120,7 +120,7 @@ fn main() {
                 let refined = if has_rules { None } else { refine(&mesh, &plan, u64::MAX).ok() };
                 let mut put_together = 0.0;
                 let mut make = || match &refined {
-                    Some(refined) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined, Values::Points)),
+                    Some(refined) => Ok(tables::by_rows(&gpu, &mut compute, &mesh, &plan, refined)),
                     None => {
                         let start = Instant::now();
                         let program = program_by(&mesh, &plan, &[], limits(&gpu), Some(path));

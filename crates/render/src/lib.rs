@@ -20,6 +20,7 @@
 //! into several draws is split, and what cannot is refused with the numbers ([`Error::TooLarge`]).
 
 pub mod corners;
+mod edge_flags;
 mod error;
 mod gpu;
 mod ground;
@@ -34,6 +35,7 @@ mod pipelines;
 pub mod refine;
 mod renderer;
 mod screen;
+mod srgb;
 mod style;
 pub mod surface;
 mod target;

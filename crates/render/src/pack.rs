@@ -13,6 +13,8 @@
 //!        -y
 //! ```
 
+pub use crate::srgb::{color, encode};
+
 /// Packs a direction of any length above 0; zero and NaN become +z. Cost: about 4 ns, most of it the two divisions.
 pub fn normal([x, y, z]: [f32; 3]) -> [i16; 2] {
     let sum = x.abs() + y.abs() + z.abs();
@@ -46,22 +48,10 @@ pub fn unpack_normal(p: [i16; 2]) -> [f32; 3] {
     [x / len, y / len, z / len]
 }
 
-/// One channel from linear light to sRGB, both 0..=1.
-pub fn encode(linear: f32) -> f32 {
-    let c = linear.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
-}
-
 /// One channel from sRGB to linear light, both 0..=1.
 pub fn decode(srgb: f32) -> f32 {
     let c = srgb.clamp(0.0, 1.0);
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
-
-/// Linear RGBA to four sRGB bytes (alpha stays linear).
-pub fn color(linear: [f32; 4]) -> [u8; 4] {
-    let byte = |v: f32| (v * 255.0).round() as u8;
-    [byte(encode(linear[0])), byte(encode(linear[1])), byte(encode(linear[2])), byte(linear[3].clamp(0.0, 1.0))]
 }
 
 #[cfg(test)]

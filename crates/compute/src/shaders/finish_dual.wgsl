@@ -5,9 +5,6 @@
 //
 // `first` and `end` say which half-edges are looked at; corners are of triangles step .. marked, which are this buffer's.
 
-@group(1) @binding(0) var<storage, read_write> vertices: array<Vertex>;
-@group(1) @binding(1) var<storage, read_write> corners: array<Corner>;
-
 fn around(a: u32, b: u32, c: u32) -> vec3<f32> {
     let p = vertices[a].p;
     return cross(vertices[b].p - p, vertices[c].p - p);
@@ -50,11 +47,6 @@ fn normals(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     vertices[h].n = octahedral(of_face(face(h)) + of_edge(h) + of_edge(prev(h)) + of_vertex(origin(h)));
 }
 
-fn corner(to: u32, v: u32, face: u32, flags: u32) {
-    let p = vertices[v].p;
-    corners[to] = Corner(p.x, p.y, p.z, vertices[v].n, face, flags);
-}
-
 // Triangle i of all: a fan's, whose polygon's normal is `sum`. The kind of its polygon is in bits 6 and 7.
 fn put(i: u32, a: u32, b: u32, c: u32, sum: vec3<f32>, flags: u32) {
     if i < at.step || i >= at.marked {
@@ -62,9 +54,9 @@ fn put(i: u32, a: u32, b: u32, c: u32, sum: vec3<f32>, flags: u32) {
     }
     let face = octahedral(sum);
     let to = 3u * (i - at.step);
-    corner(to, a, face, flags);
-    corner(to + 1u, b, face, flags);
-    corner(to + 2u, c, face, flags);
+    place(to, a, face, flags);
+    place(to + 1u, b, face, flags);
+    place(to + 2u, c, face, flags);
 }
 
 // Which sides of a fan's triangle are the polygon's: always the outer one, and those of its first and last.

@@ -7,9 +7,7 @@
 //    |  h   | n(h) |       around e(h)   those of h and n(h), and on the other side of t and n(t)
 //    v ---- e(h) - n
 
-@group(1) @binding(0) var<storage, read_write> vertices: array<Vertex>;
 @group(1) @binding(1) var<storage, read_write> indices: array<vec2<u32>>;
-@group(1) @binding(1) var<storage, read_write> corners: array<Corner>;
 
 fn point(v: u32) -> vec3<f32> {
     return vertices[v].p;
@@ -78,11 +76,6 @@ fn faces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     indices[to] = vec2(v, e);
     indices[to + 1u] = vec2(f, v);
     indices[to + 2u] = vec2(f, at.first_edge + edge(prev(h)));
-}
-
-fn place(to: u32, v: u32, face: u32, flags: u32) {
-    let p = vertices[v].p;
-    corners[to] = Corner(p.x, p.y, p.z, vertices[v].n, face, flags);
 }
 
 // The same two triangles with corners of their own, which carry more than points. Old vertex to edge point is half of an edge of the

@@ -6,9 +6,6 @@
 //      \ | /
 //        v
 
-@group(1) @binding(0) var<storage, read_write> vertices: array<Vertex>;
-@group(1) @binding(1) var<storage, read_write> corners: array<Corner>;
-
 fn triangle(h: u32) -> vec3<u32> {
     return vec3(origin(h), at.first_face + face(twin(h)), at.first_face + face(h));
 }
@@ -46,11 +43,6 @@ fn normals(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
     vertices[v].n = octahedral(sum);
 }
 
-fn place(to: u32, v: u32, face: u32) {
-    let p = vertices[v].p;
-    corners[to] = Corner(p.x, p.y, p.z, vertices[v].n, face, 7u); // all sides are edges, none the parent's
-}
-
 // One invocation a half-edge, which is a child face.
 @compute @workgroup_size(256)
 fn faces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -61,7 +53,8 @@ fn faces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) 
     let v = triangle(h);
     let face = octahedral(around(h));
     let to = 3u * (h - at.first);
-    place(to, v.x, face);
-    place(to + 1u, v.y, face);
-    place(to + 2u, v.z, face);
+    // All sides are edges, none the parent's.
+    place(to, v.x, face, 7u);
+    place(to + 1u, v.y, face, 7u);
+    place(to + 2u, v.z, face, 7u);
 }

@@ -6,9 +6,6 @@
 //      /  \ f /  \
 //     n --- . ----- p
 
-@group(1) @binding(0) var<storage, read_write> vertices: array<Vertex>;
-@group(1) @binding(1) var<storage, read_write> corners: array<Corner>;
-
 fn on_edge(h: u32) -> u32 {
     return at.first_edge + edge(h);
 }
@@ -61,11 +58,6 @@ fn normals(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups
             vertices[on_edge(h)].n = octahedral(sum);
         }
     }
-}
-
-fn place(to: u32, v: u32, face: u32, flags: u32) {
-    let p = vertices[v].p;
-    corners[to] = Corner(p.x, p.y, p.z, vertices[v].n, face, flags);
 }
 
 // One invocation a child face: those at corners, then those in the middle.

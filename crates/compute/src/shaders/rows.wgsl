@@ -2,13 +2,12 @@
 //
 //   offsets   where the entries of each row begin, and the end
 //   entries   source, weight:   a vertex of the level before, or CHILD | a child of an earlier pass
-//   moves     what a row's point is moved by, three numbers each; where MOVED stands before this file
 //
+// Before this file stands `moved`: what a row's point is moved by.
 // One invocation a row: the same sum in the same order as the kernel's, from single numbers.
 
 @group(0) @binding(1) var<storage, read> offsets: array<u32>;
 @group(0) @binding(2) var<storage, read> entries: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read> moves: array<f32>;
 @group(1) @binding(0) var<storage, read> old: array<vec4<f32>>;
 @group(1) @binding(1) var<storage, read_write> new_points: array<vec4<f32>>;
 
@@ -30,8 +29,5 @@ fn points(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             sum += w * old[entry.x];
         }
     }
-    if MOVED {
-        sum += vec4(moves[3u * i], moves[3u * i + 1u], moves[3u * i + 2u], 0.0);
-    }
-    new_points[at.first_face + i] = sum;
+    new_points[at.first_face + i] = sum + moved(i);
 }

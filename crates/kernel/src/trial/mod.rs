@@ -13,7 +13,7 @@ pub mod cages;
 pub mod same;
 
 use crate::{Drawing, limits};
-use limn_mesh::{Boundary, Faces, Job, Mesh, Plan, Refined, Soup, Weld, scheme};
+use limn_mesh::{Boundary, Faces, Job, Mesh, Plan, Refined, SCHEMES, Soup, Weld, scheme};
 use same::{Sorted, Surface};
 use std::sync::Arc;
 #[cfg(target_arch = "wasm32")]
@@ -75,6 +75,11 @@ impl Trial {
         Trial { soup, made: None }
     }
 
+    /// The names of all schemes.
+    pub fn schemes() -> Vec<String> {
+        SCHEMES.iter().map(|entry| entry.info.id.to_owned()).collect()
+    }
+
     /// Refines to a level, from indexed faces; with unit normals at its points if it is `shaded`.
     ///
     /// # Errors
@@ -88,16 +93,20 @@ impl Trial {
         Ok(())
     }
 
-    /// What a GPU does for the same, from indexed faces; none where the CPU has to.
+    /// What a GPU does for the same, from indexed faces: by kernels made for the scheme, or by `rows`. None where the CPU has to.
     ///
     /// # Errors
     /// As [`Trial::run`], and a sentence for a buffer that the adapter does not take.
-    pub fn draw(&self, id: &str, level: u32, buffer: f64, groups: u32) -> Result<Option<Drawing>, String> {
+    pub fn draw(&self, id: &str, level: u32, buffer: f64, groups: u32, rows: bool) -> Result<Option<Drawing>, String> {
         let entry = scheme(id).ok_or_else(|| format!("there is no scheme `{id}`"))?;
         let plan = Plan::new(entry, Boundary::default(), level);
         let (mesh, _) = Mesh::build(&self.soup, Weld::Off).map_err(|e| e.to_string())?;
-        let program = limn_compute::program(&mesh, &plan, &[], limits(buffer, groups)).map_err(|e| e.to_string())?;
-        Ok(program.map(|program| Drawing::new(program, &mesh.positions)))
+        let (mesh, limits) = (Arc::new(mesh), limits(buffer, groups));
+        let made = match rows {
+            true => limn_compute::by_rows(&mesh, &plan, &[], limits),
+            false => limn_compute::program(&mesh, &plan, &[], limits),
+        };
+        Ok(made.map_err(|e| e.to_string())?.map(|program| Drawing::new(program, &mesh.positions)))
     }
 
     /// How many faces a level will have; 0 if it cannot be made.

@@ -1,8 +1,7 @@
 //! From the kernel's meshes and plans to refiners, and their vertices back.
 
 use limn_compute::{Program, Rows, Rules, Tables, Values, fused, recorded};
-use limn_mesh::{Connectivity, Faces, Mesh, Plan, Refined};
-use limn_render::corners::edge_flags;
+use limn_mesh::{Faces, Mesh, Plan, Refined};
 use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Gpu, pack};
 
@@ -15,28 +14,11 @@ pub fn faces(refined: &Refined) -> limn_render::Faces<'_> {
     }
 }
 
-/// What is known of the parent level's vertices.
-pub fn parents(refined: &Refined) -> Option<[u32; 2]> {
-    match (refined.parent_ranges, &refined.faces) {
-        (Some(ranges), _) => Some(ranges),
-        (None, Faces::Quads(_)) => None,
-        (None, _) => Some([refined.vertex_parents; 2]),
-    }
-}
-
-/// Refines by rows: points, or the mesh's colours.
-pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined, what: Values) -> Refiner {
+/// Refines by rows.
+pub fn by_rows(gpu: &Gpu, compute: &mut Compute, mesh: &Mesh, plan: &Plan, refined: &Refined) -> Refiner {
     let levels = recorded(mesh, plan).unwrap();
-    let kinds: Vec<u8> = refined.kinds.iter().map(|k| *k as u8 + 1).collect();
-    let rows = Rows {
-        cage: mesh.topology.vertices(),
-        levels: &levels,
-        faces: &refined.faces,
-        parents: parents(refined),
-        kinds: &kinds,
-        flags: edge_flags,
-    };
-    run(gpu, compute, mesh, limn_compute::rows(&rows, what, limits(gpu)).unwrap(), what)
+    let rows = Rows { mesh, levels: &levels, level: refined, parts: &[] };
+    run(gpu, compute, mesh, limn_compute::rows(&rows, limits(gpu)).unwrap(), Values::Points)
 }
 
 /// Refines by kernels made for the scheme.

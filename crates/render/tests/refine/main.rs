@@ -1,14 +1,15 @@
 //! What the GPU refines is what the CPU refines, vertex by vertex: every scheme and level, on closed, open, mixed and creased
 //! meshes, through kernels made for a scheme and through rows.
 
+#[path = "../common/mod.rs"]
 mod common;
-#[path = "refine/patches.rs"]
+mod drawn;
 mod patches;
-#[path = "common/tables.rs"]
+#[path = "../common/tables.rs"]
 mod tables;
 
 use common::renderer;
-use limn_compute::{Cage, Limits, Rules, Scheme, Tables, Values, fused, program, rules};
+use limn_compute::{Cage, Limits, Rules, Scheme, Tables, Values, by_rows, fused, program, rules};
 use limn_mesh::{
     Accepts, Boundary, Decay, Fairing, Mesh, Params, Plan, Refined, Run, SCHEMES, Soup, TriangleRule, Weld, bounds,
     refine, scheme, shape, triangulate_soup,
@@ -163,7 +164,7 @@ impl Check {
             self.same(&refiner, &refined, &format!("{what}, kernels"));
         }
         if rules.is_none() || rows_too {
-            let refiner = tables::by_rows(self.renderer.gpu(), &mut self.compute, mesh, plan, &refined, Values::Points);
+            let refiner = tables::by_rows(self.renderer.gpu(), &mut self.compute, mesh, plan, &refined);
             self.same(&refiner, &refined, &format!("{what}, rows"));
         }
     }
@@ -217,6 +218,16 @@ fn options_of_rules_and_parameters() {
         plan.later.push(Run { from: 1, scheme: scheme("catmull-clark").unwrap(), params: Params::default() });
         plan.fairings.push(Fairing { at: 1, iterations: 2 });
         check.plan(&quads, &plan, &format!("a mixed plan of {name}"), false);
+        // The limit, after fairing too.
+        for entry in SCHEMES {
+            let mut plan = Plan::new(entry, Boundary::EdgeAndCorner, 2);
+            plan.limit = true;
+            let mesh = if plan.split(&quads).is_ok() { &quads } else { &cut };
+            check.plan(mesh, &plan, &format!("{} of {name} in the limit", entry.info.id), false);
+        }
+        let mut plan = Plan::new(scheme("catmull-clark").unwrap(), Boundary::EdgeAndCorner, 1);
+        (plan.limit, plan.fairings) = (true, vec![Fairing { at: 1, iterations: 1 }]);
+        check.plan(&quads, &plan, &format!("{name}, faired, in the limit"), false);
     }
     // Copies of vertices that are tied stay together: three sheets along one edge.
     let book = Soup::from_faces(
@@ -282,14 +293,15 @@ fn more_groups_than_one_dimension_takes() {
 fn a_cage_that_moves() {
     let Some(mut check) = Check::new() else { return };
     let mesh = build(&named("cube"));
-    for id in ["catmull-clark", "doo-sabin"] {
+    // A fractal's constants are lengths of the cage's edges.
+    for id in ["catmull-clark", "doo-sabin", "mid-edge", "fractal"] {
         let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 3);
         let refined = refine(&mesh, &plan, BUDGET).unwrap();
         let mut refiner = match rules(&mesh, &plan) {
             Some(rules) => {
                 tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, 3, Values::Points)
             }
-            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined, Values::Points),
+            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined),
         };
         check.same(&refiner, &refined, id);
         let mut moved = Mesh::clone(&mesh);
@@ -303,137 +315,59 @@ fn a_cage_that_moves() {
     }
 }
 
-/// What is drawn of the GPU's buffers is what is drawn of uploaded ones: faces, edges, both layouts.
+/// The list in the documentation of `program`: each of these has rows, and its neighbour on the list's other side has kernels.
 #[test]
-fn pictures_of_both_are_one() {
-    let Some(mut check) = Check::new() else { return };
-    let sheet = sheet(4);
-    let cases = [("catmull-clark", 2, sheet.clone()), ("loop", 2, triangles(&sheet)), ("doo-sabin", 1, sheet.clone())];
-    for (id, level, soup) in cases.into_iter().chain([
-        ("kobbelt", 2, named("cube")),
-        ("sqrt3", 2, triangles(&sheet)),
-        ("sqrt3", 3, triangles(&named("cube"))),
-        ("doo-sabin", 2, prism(7, false)),
-    ]) {
+fn what_has_no_kernels_has_rows() {
+    let Some(check) = Check::new() else { return };
+    let limits = limits(check.gpu());
+    let [cube, sheet] = [named("cube"), sheet(4)];
+    let [cut, cut_sheet] = [&cube, &sheet].map(triangles);
+    let holed = |mut soup: Soup| {
+        soup.marks.holes.push(1);
+        soup
+    };
+    let parted = |n: usize| (0..n as u32).map(|f| f % 2).collect::<Vec<u32>>();
+    let plain = |_: &mut Plan| ();
+    let cases: [(&str, Soup, &[u32], &dyn Fn(&mut Plan), bool); 18] = [
+        ("kobbelt", cube.clone(), &[], &plain, false),
+        ("doo-sabin", cube.clone(), &[], &plain, true),
+        ("doo-sabin", cube.clone(), &parted(6), &plain, false),
+        ("doo-sabin", sheet.clone(), &[], &plain, false),
+        ("sqrt3", cut.clone(), &[], &plain, true),
+        ("sqrt3", cut_sheet.clone(), &[], &plain, false),
+        ("sqrt3", creased(cut.clone()), &[], &plain, false),
+        ("loop", creased(cut_sheet.clone()), &[], &plain, true),
+        ("butterfly", creased(cut_sheet.clone()), &[], &plain, false),
+        ("modified-butterfly", cut_sheet.clone(), &[], &plain, true),
+        ("modified-butterfly", creased(cut_sheet), &[], &plain, false),
+        ("catmull-clark", cube.clone(), &parted(6), &plain, true),
+        ("catmull-clark", cube.clone(), &[], &|plan| plan.limit = true, false),
+        ("catmull-clark", cube.clone(), &[], &|plan| plan.fairings.push(Fairing { at: 1, iterations: 1 }), false),
+        (
+            "catmull-clark",
+            cube.clone(),
+            &[],
+            &|plan| plan.later.push(Run { from: 1, scheme: scheme("linear").unwrap(), params: Params::default() }),
+            false,
+        ),
+        ("catmull-clark", holed(cube), &[], &plain, false),
+        ("catmull-clark", sheet.clone(), &[], &|plan| plan.rules.boundary = Boundary::None, false),
+        ("catmull-clark", sheet, &[], &|plan| plan.rules.boundary = Boundary::EdgeOnly, true),
+    ];
+    for (id, soup, parts, tweak, kernels) in cases {
         let mesh = build(&soup);
-        let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
-        let refined = refine(&mesh, &plan, BUDGET).unwrap();
-        let refiner = match rules(&mesh, &plan) {
-            Some(rules) => {
-                tables::by_kernels(check.renderer.gpu(), &mut check.compute, &mesh, &rules, level, Values::Points)
-            }
-            None => tables::by_rows(check.renderer.gpu(), &mut check.compute, &mesh, &plan, &refined, Values::Points),
-        };
-        let normals = refined.normals();
-        let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
-        data.parents = tables::parents(&refined);
-        let kind_of = |f: usize| refined.kinds.get(f).map_or(0, |k| *k as u32 + 1);
-        data.kind_of = (!refined.kinds.is_empty()).then_some(&kind_of);
-        let mut upload = check.renderer.upload(&data).unwrap();
-        while !upload.step(check.gpu(), &data, 1000).unwrap() {}
-        let uploaded = upload.finish();
-        let surface = refiner.surface(uploaded.bounds(), None).unwrap();
-        check.same_picture(uploaded, surface, id);
+        let mut plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 2);
+        tweak(&mut plan);
+        assert_eq!(program(&mesh, &plan, parts, limits).unwrap().is_some(), kernels, "{id}");
+        assert!(by_rows(&mesh, &plan, parts, limits).unwrap().is_some(), "{id}");
+        // The cage itself, and more than rows are made for.
+        assert_eq!(program(&mesh, &plan.to(0), parts, limits).unwrap(), None);
+        assert_eq!([0, 11].map(|level| by_rows(&mesh, &plan.to(level), parts, limits).unwrap()), [None, None]);
     }
-}
-
-/// Texture coordinates across seams, colours, and parts of several materials: what is drawn is what is drawn of uploaded corners.
-#[test]
-fn what_corners_carry_and_parts() {
-    let Some(mut check) = Check::new() else { return };
-    let paint = |color: [f32; 3]| Material { base_color: [color[0], color[1], color[2], 1.0], texture: Some(0) };
-    let rgba: Vec<u8> =
-        (0..64).flat_map(|i| if (i + i / 8) % 2 == 0 { [255; 4] } else { [90, 160, 255, 255] }).collect();
-    check.renderer.set_textures(&[TextureData { width: 8, height: 8, rgba: &rgba }]).unwrap();
-    check.renderer.set_materials(&[paint([0.9, 0.6, 0.3]), paint([0.4, 0.9, 0.5])]);
-    for (id, cut) in [("catmull-clark", false), ("loop", true), ("linear", false), ("modified-butterfly", true)] {
-        for (with_uv, with_colors, with_parts) in
-            [(true, false, false), (false, true, false), (true, true, true), (false, false, true)]
-        {
-            let mut soup = if cut { triangles(&sheet(4)) } else { sheet(4) };
-            if with_uv {
-                // A chart for each half of the sheet, and every fifth face a chart of its own.
-                for f in 0..soup.face_count() {
-                    for &v in soup.face(f).to_vec().iter() {
-                        let [x, y, _] = soup.positions[v as usize];
-                        let chart = if f % 5 == 3 { f as f32 } else { f32::from(u8::from(f > soup.face_count() / 2)) };
-                        soup.uv_corners.push(soup.uvs.len() as u32);
-                        soup.uvs.push([0.25 * x + chart * 0.1, 0.25 * y - chart * 0.05]);
-                    }
-                }
-            }
-            let mut mesh = Mesh::clone(&build(&soup));
-            if with_colors {
-                mesh.colors = mesh.positions.iter().map(|p| [0.2 * p[0], 0.2 * p[1], p[2], 1.0]).collect();
-            }
-            let mesh = Arc::new(mesh);
-            let parts: Vec<u32> = (0..soup.face_count()).map(|f| u32::from(with_parts && f % 3 == 1)).collect();
-            let parts = if with_parts { &parts[..] } else { &[] };
-            let list = [Part { material: 0, group: 0 }, Part { material: 1, group: 0 }];
-            for level in [1, 2, 3] {
-                let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, level);
-                let refined = refine(&mesh, &plan, BUDGET).unwrap();
-                let program = program(&mesh, &plan, parts, limits(check.gpu())).unwrap().unwrap();
-                let mut refiner = Refiner::new(check.renderer.gpu(), &mut check.compute, &program).unwrap();
-                refiner.set_points(check.gpu(), 0, &mesh.positions).unwrap();
-                refiner.refine(check.gpu());
-                check.same(&refiner, &refined, id);
-                let normals = refined.normals();
-                let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
-                (data.parents, data.colors) = (tables::parents(&refined), &refined.colors);
-                data.uv = refined.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
-                data.force_corners = with_colors;
-                let part_of = |f: usize| parts.get(refined.face_source(f as u32) as usize).copied().unwrap_or(0);
-                data.parts = &list;
-                data.part_of = with_parts.then_some(&part_of);
-                let mut upload = check.renderer.upload(&data).unwrap();
-                while !upload.step(check.gpu(), &data, 1000).unwrap() {}
-                let uploaded = upload.finish();
-                let mut surface = refiner.surface(uploaded.bounds(), None).unwrap();
-                surface.settle(uploaded.bounds(), &list, program.runs.as_flattened());
-                let what = format!("{id}-{level}-{with_uv}-{with_colors}-{with_parts}");
-                check.same_picture(uploaded, surface, &what);
-            }
-        }
-    }
-}
-
-/// Colours take the rules that points take, and are drawn with them where faces share vertices.
-#[test]
-fn colours_go_the_same_way() {
-    let Some(mut check) = Check::new() else { return };
-    for id in ["catmull-clark", "doo-sabin", "loop", "fractal", "kobbelt"] {
-        let soup = if id == "loop" { triangles(&sheet(4)) } else { sheet(4) };
-        let mut mesh = Mesh::clone(&build(&soup));
-        let shade = |p: &[f32; 3]| [0.2 * p[0], 0.2 * p[1], p[2], 0.5 + 0.1 * p[0]];
-        mesh.colors = mesh.positions.iter().map(shade).collect();
-        let mesh = Arc::new(mesh);
-        let plan = Plan::new(scheme(id).unwrap(), Boundary::EdgeAndCorner, 2);
-        let refined = refine(&mesh, &plan, BUDGET).unwrap();
-        let (gpu, compute) = (check.renderer.gpu(), &mut check.compute);
-        let [points, colors] = [Values::Points, Values::Colors].map(|what| match rules(&mesh, &plan) {
-            Some(rules) => tables::by_kernels(gpu, compute, &mesh, &rules, 2, what),
-            None => tables::by_rows(gpu, compute, &mesh, &plan, &refined, what),
-        });
-        let read: Vec<_> = tables::read_words(gpu, &colors).into_iter().map(|w| w.map(f32::from_bits)).collect();
-        assert_eq!(read.len(), refined.colors.len());
-        let off = read.iter().zip(&refined.colors).flat_map(|(a, b)| (0..4).map(|k| (a[k] - b[k]).abs()));
-        let worst = off.fold(0.0, |a, b| if b <= a { a } else { b });
-        assert!(worst <= 1e-5, "{id}: colours are off by {worst:e}");
-        if refined.parent_ranges.is_none() {
-            let error = points.surface(Bounds { min: [0.0; 3], max: [1.0; 3] }, Some(&colors)).err().unwrap();
-            assert!(error.to_string().starts_with("colours of vertices that quads share"), "{error}");
-            continue;
-        }
-        let normals = refined.normals();
-        let mut data = SurfaceData::new(&refined.points, &normals, tables::faces(&refined));
-        (data.parents, data.colors) = (refined.parent_ranges, &refined.colors);
-        let mut upload = check.renderer.upload(&data).unwrap();
-        while !upload.step(check.gpu(), &data, 1000).unwrap() {}
-        let uploaded = upload.finish();
-        let surface = points.surface(uploaded.bounds(), Some(&colors)).unwrap();
-        check.same_picture(uploaded, surface, id);
-    }
+    // A sheet of triangles for a scheme of triangles, or a sentence.
+    let loops = Plan::new(scheme("loop").unwrap(), Boundary::EdgeAndCorner, 2);
+    let error = by_rows(&build(&named("cube")), &loops, &[], limits).unwrap_err();
+    assert!(error.to_string().contains("triangulate first"), "{error}");
 }
 
 /// Tables that would hang a kernel, or that no buffer holds, come back as a sentence.
