@@ -17,7 +17,8 @@
 //! Cost on the GPU, Catmull-Clark, bytes a face of the last level: 16 written for points, 4 for normals and, once, 24 for
 //! indices; about 16 read of the level before. Memory besides: a quarter, a sixteenth .. of 16 for points and 36 for half-edges.
 //! Limits: a level's points, and half-edges of the one before, must fit one binding ([`Error::TooLarge`] says by how much they
-//! do not); indices and corners are made in pieces. [`program()`] says what has no kernels. The GPU's sums differ from the CPU's by their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
+//! do not); indices and corners are made in pieces. [`program()`] says what has no kernels. The GPU's sums differ from the CPU's by
+//! their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
 
 mod cage;
 #[path = "../../render/src/edge_flags.rs"]
