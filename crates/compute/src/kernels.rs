@@ -256,7 +256,7 @@ impl Kernel {
             (Kernel::Points(_), Split::Sqrt3) => head + wgsl!("shaders/sqrt3.wgsl"),
             (Kernel::Points(_), Split::Dual) => head + wgsl!("shaders/dual.wgsl"),
             (Kernel::Patches(_, depth), _) => {
-                Team::new(split, depth).constants() + &head + pack + wgsl!("shaders/patches.wgsl")
+                Team::new(split, depth).constants() + &head + wgsl!("shaders/pack.wgsl") + wgsl!("shaders/patches.wgsl")
             }
             (Kernel::Extras(_), _) => {
                 let quads = split == Split::Quad;

@@ -10,17 +10,17 @@
 //! Nothing here has a device: a [`Program`] says which buffers there are and what runs on them, and who has one runs it ([`mod@program`]).
 //! Three ways make the points. *The fused gather* (`fused.rs`): hand-written rules that find a level's neighbours through `twin`
 //! and `origin` alone, so a level costs one dispatch and no atomics; half-edges of the next level are arithmetic (Dupuy & Vanhoey
-//! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Patches* (`patch.rs`): from level 5 on ([`path`]) the last levels of Catmull-Clark, Loop and linear at
-//! once, from the rings of the faces of level 1, with no level between. *Rows* (`rows.rs`): any plan's weights as sparse
-//! rows, one dispatch a pass; they cost the CPU more to make than the level itself, and pay where the cage moves. All number child vertices as `limn-mesh` does, so what was made here and there can be compared, drawn
-//! and exported alike.
+//! 2021; Vanhoey & Dupuy 2022), and those of the last are never built. Colours go the same way ([`Values`]). *Patches* (`patch.rs`): from
+//! level 5 on ([`path`]) the last levels of Catmull-Clark, Loop and linear at once, from the rings of the faces of level 1, with no level
+//! between. *Rows* (`rows.rs`): any plan's weights as sparse rows, one dispatch a pass; they cost the CPU more to make than the level
+//! itself, and pay where the cage moves. All number child vertices as `limn-mesh` does, so what was made here and there can be compared,
+//! drawn and exported alike.
 //!
 //! Cost on the GPU, Catmull-Clark, bytes a face of the last level: 16 written for points, 4 for normals and, once, 24 for
 //! indices; about 16 read of the level before. Memory besides: a quarter, a sixteenth .. of 16 for points and 36 for half-edges.
 //! Limits: a level's points, and half-edges of the one before, must fit one binding ([`Error::TooLarge`] says by how much they
-//! do not); indices and corners are made in pieces. [`program()`] says what has no kernels.
-//! The GPU's sums differ from the
-//! CPU's by their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
+//! do not); indices and corners are made in pieces. [`program()`] says what has no kernels. The GPU's sums differ from the CPU's by
+//! their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
 
 mod cage;
 #[path = "../../render/src/edge_flags.rs"]

@@ -5,8 +5,9 @@
 //! ```
 //!
 //! Rows depend on connectivity and marks alone, so they stay on the GPU while the cage is edited. Memory: 8 bytes a weight and 4 a
-//! row; a row of a regular Catmull-Clark vertex has nine. To make them costs the CPU 50 to 200 ns a row, several times what refining does, so they pay where the
-//! cage will move. Limits: the rows of a pass must fit one binding, and [`by_rows`] makes them for a million vertices at most.
+//! row; a row of a regular Catmull-Clark vertex has nine. To make them costs the CPU 50 to 200 ns a row, several times what refining
+//! does, so they pay where the cage will move. Limits: the rows of a pass must fit one binding, and [`by_rows`] makes them for a million
+//! vertices at most.
 
 use super::kernels::{Kernel, Level};
 use super::program::{Builder, Dispatch, Id, Limits, Program, Role};

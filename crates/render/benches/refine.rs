@@ -19,7 +19,7 @@
 #[allow(dead_code)]
 mod tables;
 
-use limn_compute::{Path, Values, program_by, rules};
+use limn_compute::{Path, program_by, rules};
 use limn_mesh::{Boundary, Mesh, PatchTables, Plan, Soup, Weld, refine, scheme, shape, triangulate_soup};
 use limn_render::refine::{Compute, Refiner, limits};
 use limn_render::{Gpu, Tier};

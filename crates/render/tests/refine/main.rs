@@ -328,7 +328,8 @@ fn what_has_no_kernels_has_rows() {
     };
     let parted = |n: usize| (0..n as u32).map(|f| f % 2).collect::<Vec<u32>>();
     let plain = |_: &mut Plan| ();
-    let cases: [(&str, Soup, &[u32], &dyn Fn(&mut Plan), bool); 18] = [
+    type Case<'a> = (&'a str, Soup, &'a [u32], &'a dyn Fn(&mut Plan), bool);
+    let cases: [Case<'_>; 18] = [
         ("kobbelt", cube.clone(), &[], &plain, false),
         ("doo-sabin", cube.clone(), &[], &plain, true),
         ("doo-sabin", cube.clone(), &parted(6), &plain, false),
