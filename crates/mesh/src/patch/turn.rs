@@ -262,10 +262,9 @@ mod fours {
                 let [a, b, c, d] = places.map(|place| &ids[usize::from(place)]);
                 for (half, patches) in run.patches.chunks(FOUR).enumerate() {
                     let turned = square([load(a, half), load(b, half), load(c, half), load(d, half)]);
-                    for lane in 0..FOUR {
-                        let Some(&q) = patches.get(lane) else { break };
+                    for (four, &q) in turned.into_iter().zip(patches) {
                         let begin = (q - run.first) as usize * run.per + from;
-                        store(turned[lane], &mut out[begin..begin + FOUR], 0);
+                        store(four, &mut out[begin..begin + FOUR], 0);
                     }
                 }
             }
