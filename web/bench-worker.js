@@ -15,7 +15,7 @@ import { Runner } from "./compute.js";
  * One engine with its input. `prepare` throws where the engine has no such scheme; `run` goes from indexed faces to a level; `bandwidth` is
  * there where plain stores of the engine's own kind can be measured, in bytes a second, and `stored` the bytes of a level as Limn gives it out.
  * @typedef {{ prepare(cage: Cage, scheme: string, level: number): void | Promise<void>, run(): void | Promise<void>,
- *   surface(): Surface | Promise<Surface>, faces(): number, stored?(): number, peak(): number | null, bandwidth?(): number | Promise<number> }} Engine
+ *   surface(): Surface | Promise<Surface>, faces(): number, stored?(): number, peak(): number | null, kernels?(): string[], bandwidth?(): number | Promise<number> }} Engine
  */
 /**
  * The part of the kernel's module that is used here: crates/kernel/src/trial/mod.rs.
@@ -356,6 +356,8 @@ const calls = {
   /** Bytes of what Limn stores here; null where the engine is another. */
   stored: () => present().stored?.() ?? null,
   peak: () => present().peak(),
+  /** What ran on the GPU; null where nothing does. */
+  kernels: () => present().kernels?.() ?? null,
   cage: (/** @type {string} */ name, /** @type {number} */ n) => wasm().cage(name, n),
   differs: (/** @type {Surface} */ other, /** @type {number} */ tolerance) => wasm().differs(other, tolerance),
   bandwidth: () => present().bandwidth?.() ?? null,
