@@ -13,7 +13,7 @@
 //! 4 times the ring a value of each table. Limit: where the CPU takes patches as well (`start`).
 
 use super::class::{Classes, Table, Tabled};
-use super::grid::{LANES, Spline};
+use super::grid::{BLOCK, Spline};
 use super::layout::Layout;
 use super::ring::{self, Ring};
 use crate::crease::Creases;
@@ -217,7 +217,7 @@ impl Table {
     /// Some of its values, control by control.
     fn by_controls(&self, values: &[usize]) -> PatchTable {
         let n = self.active.len();
-        let weight = |k: usize, i: usize| self.weights.get((i / LANES * n + k) * LANES + i % LANES).copied();
+        let weight = |k: usize, i: usize| self.weights.get((i / BLOCK * n + k) * BLOCK + i % BLOCK).copied();
         let weights = (0..n).flat_map(|k| values.iter().map(move |&i| weight(k, i).unwrap_or(0.0))).collect();
         PatchTable { controls: n as u32, weights }
     }
