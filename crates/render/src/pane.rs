@@ -8,7 +8,8 @@ use crate::ground::{Placement, Shadow};
 use crate::overlay::Instances;
 use crate::pipelines::Pipelines;
 use crate::style::Frame;
-use crate::surface::{Run, Surface, buffer};
+use crate::surface::{Surface, buffer};
+use limn_layout::Run;
 use crate::uniform::{Globals, Viewer};
 
 /// One draw of the surface: a stretch of a chunk with one material.

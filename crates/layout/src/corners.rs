@@ -14,7 +14,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::{Error, pack, surface::Faces, surface::SurfaceData};
+use crate::{Error, Faces, SurfaceData, pack};
 
 /// Cuts a polygon into triangles of local corner numbers: `(points, polygon's vertex indices, out)`.
 ///
