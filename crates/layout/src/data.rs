@@ -176,12 +176,24 @@ impl Bounds {
     /// Nothing.
     pub const EMPTY: Bounds = Bounds { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
-    /// Grows to hold a point; numbers that are none count for nothing.
-    pub fn add(&mut self, p: [f32; 3]) {
-        // min and max let the other operand win over NaN.
-        for ((min, max), v) in self.min.iter_mut().zip(&mut self.max).zip(p) {
-            *min = min.min(v);
-            *max = max.max(v);
+    /// Grows to hold points; numbers that are none count for nothing.
+    pub fn add_all(&mut self, points: &[[f32; 3]]) {
+        // Four points are three vectors of four, in which every coordinate stays in its lane.
+        let (groups, rest) = points.as_chunks::<4>();
+        let (mut low, mut high) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
+        for group in groups {
+            for (i, &v) in group.as_flattened().iter().enumerate() {
+                // Comparing with NaN is false.
+                low[i] = if v < low[i] { v } else { low[i] };
+                high[i] = if v > high[i] { v } else { high[i] };
+            }
+        }
+        let (low, high) = (low.as_chunks::<3>().0, high.as_chunks::<3>().0);
+        for p in low.iter().chain(rest) {
+            self.min = std::array::from_fn(|k| self.min[k].min(p[k]));
+        }
+        for p in high.iter().chain(rest) {
+            self.max = std::array::from_fn(|k| self.max[k].max(p[k]));
         }
     }
 
@@ -206,6 +218,19 @@ mod tests {
         assert_eq!(data.gpu_bytes(), 9 * 16 + 4 * 24);
         data.force_corners = true;
         assert_eq!(data.gpu_bytes(), 8 * 72);
+    }
+
+    #[test]
+    fn boxes_hold_every_point_and_no_nan() {
+        for n in 0..13 {
+            let mut points: Vec<[f32; 3]> = (0..n).map(|i| [i as f32, -(i as f32), 2.0]).collect();
+            points.push([f32::NAN, 5.0, 0.5]);
+            let mut bounds = Bounds::EMPTY;
+            bounds.add_all(&points);
+            let last = n as f32 - 1.0;
+            let expected = if n == 0 { [[f32::INFINITY, 5.0, 0.5], [f32::NEG_INFINITY, 5.0, 0.5]] } else { [[0.0, -last, 0.5], [last, 5.0, 2.0]] };
+            assert_eq!([bounds.min, bounds.max], expected, "{n}");
+        }
     }
 
     #[test]

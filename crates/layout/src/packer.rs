@@ -22,6 +22,9 @@ struct SharedVertex {
     normal: [i16; 2],
 }
 
+/// Vertices that are packed at once.
+const LANES: usize = 8;
+
 /// A run of elements (indices or corners) that belongs to one part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Run {
@@ -162,15 +165,23 @@ impl Packer {
     fn points(&mut self, data: &SurfaceData<'_>, end: usize, out: &mut impl Sink) {
         let range = self.next_point..end;
         let points = data.points.get(range.clone()).unwrap_or(&[]);
-        // Kept out of `self` while it is added to, so that it stays in registers.
-        let mut bounds = self.bounds;
-        points.iter().for_each(|&p| bounds.add(p));
-        self.bounds = bounds;
+        self.bounds.add_all(points);
         if self.shape.get(2).is_some_and(|&b| b > 0) {
-            self.vertices.clear();
             let normals = data.normals.get(range.clone()).unwrap_or(&[]);
-            let pairs = points.iter().zip(normals);
-            self.vertices.extend(pairs.map(|(&position, &n)| SharedVertex { position, normal: pack::normal(n) }));
+            self.vertices.resize(points.len(), SharedVertex::zeroed());
+            // In groups, so that a vector packs several.
+            let (groups, rest) = self.vertices.as_chunks_mut::<LANES>();
+            let (own, own_rest) = points.as_chunks::<LANES>();
+            let (bent, bent_rest) = normals.as_chunks::<LANES>();
+            for ((out, points), normals) in groups.iter_mut().zip(own).zip(bent) {
+                let packed = pack::normals(normals);
+                for i in 0..LANES {
+                    out[i] = SharedVertex { position: points[i], normal: packed[i] };
+                }
+            }
+            for ((out, &position), &n) in rest.iter_mut().zip(own_rest).zip(bent_rest) {
+                *out = SharedVertex { position, normal: pack::normal(n) };
+            }
             out.write(Place::Vertices, range.start as u64 * 16, cast_slice(&self.vertices));
             if !data.colors.is_empty() {
                 self.colors.clear();
@@ -192,24 +203,47 @@ impl Packer {
     ) -> Result<(), Error> {
         let mut indices = std::mem::take(&mut self.indices);
         indices.clear();
-        indices.reserve(range.len());
         let quads = data.faces.corners().as_chunks::<4>().0;
-        let order = self.order.as_deref();
-        for i in range {
-            let f = order.and_then(|order| order.get(i)).map_or(i, |&f| f as usize);
-            let Some(&[a, b, c, d]) = quads.get(f) else { continue };
-            let ordered = a < old && c >= old && c < faces && b >= faces && d >= faces && b < count && d < count;
-            if !ordered {
-                if let Some((i, &index)) = [a, b, c, d].iter().enumerate().find(|(_, v)| **v >= count) {
-                    return Err(Error::Index { corner: (4 * f + i) as u64, index, vertices: u64::from(count) });
-                }
-                return Err(Error::Order { face: f as u64 });
+        // Corners have to be old, edge, face and edge point: each in its range. Which is not is looked for afterwards.
+        let first = [0, faces, old, faces];
+        let wide = [old, count.saturating_sub(faces), faces.saturating_sub(old), count.saturating_sub(faces)];
+        let mut wrong = [false; 4];
+        let mut cut = |&quad: &[u32; 4]| {
+            for k in 0..4 {
+                wrong[k] |= quad[k].wrapping_sub(first[k]) >= wide[k];
             }
-            indices.push([a, b, c, a, c, d]);
+            let [a, b, c, d] = quad;
+            [a, b, c, a, c, d]
+        };
+        let own = range.clone();
+        match &self.order {
+            Some(order) => {
+                let listed = order.get(range).unwrap_or(&[]);
+                indices.extend(listed.iter().filter_map(|&f| quads.get(f as usize)).map(cut));
+            }
+            None => indices.extend(quads.get(range).unwrap_or(&[]).iter().map(&mut cut)),
+        }
+        if wrong.contains(&true) {
+            return Err(self.wrong_quad(quads, own, [old, faces, count]));
         }
         self.spill(6, (cast_slice(&indices), 4), &[], out);
         self.indices = indices;
         Ok(())
+    }
+
+    /// What is wrong with the first quad of these that has a corner out of its range.
+    fn wrong_quad(&self, quads: &[[u32; 4]], range: std::ops::Range<usize>, [old, faces, count]: [u32; 3]) -> Error {
+        for i in range {
+            let f = self.order.as_ref().and_then(|order| order.get(i)).map_or(i, |&f| f as usize);
+            let Some(&[a, b, c, d]) = quads.get(f) else { continue };
+            if let Some((i, &index)) = [a, b, c, d].iter().enumerate().find(|(_, v)| **v >= count) {
+                return Error::Index { corner: (4 * f + i) as u64, index, vertices: u64::from(count) };
+            }
+            if a >= old || c < old || c >= faces || b < faces || d < faces {
+                return Error::Order { face: f as u64 };
+            }
+        }
+        Error::Order { face: 0 }
     }
 
     fn corners(
