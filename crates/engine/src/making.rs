@@ -247,7 +247,7 @@ impl Making {
             Stage::Wait(filler, ..) => filler.progress(),
             Stage::Refine(work) => work.progress() * 0.66,
             Stage::Build(_, None) => 0.66,
-            Stage::Build(made, Some(upload)) => 0.7 + 0.3 * made.data(|data| upload.progress(data)),
+            Stage::Build(_, Some(upload)) => 0.7 + 0.3 * upload.progress(),
             Stage::Over => 1.0,
         }
     }

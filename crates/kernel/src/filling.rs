@@ -15,7 +15,9 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use limn_layout::{Packer, Part, Place, Sink, level, shape};
+#[cfg(any(target_arch = "wasm32", test))]
+use limn_layout::Place;
+use limn_layout::{Packer, Part, Sink, level, shape};
 use limn_mesh::{Boundary, Connectivity, Job, Mesh, Refined};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -125,9 +127,7 @@ impl Filling {
     pub fn progress(&self) -> f32 {
         match (&self.job, &self.packing) {
             (Some(job), _) => job.progress() * 0.66,
-            (None, Some((refined, normals, packer))) => {
-                0.66 + 0.34 * level(refined, normals, (&[], &[]), false, |data| packer.progress(data))
-            }
+            (None, Some((.., packer))) => 0.66 + 0.34 * packer.progress(),
             (None, None) => 1.0,
         }
     }

@@ -178,7 +178,20 @@ impl Bounds {
 
     /// Grows to hold points; numbers that are none count for nothing.
     pub fn add_all(&mut self, points: &[[f32; 3]]) {
-        // Four points are three vectors of four, in which every coordinate stays in its lane.
+        #[cfg(feature = "wide")]
+        let points = self.add_groups(points);
+        for p in points {
+            for k in 0..3 {
+                // min and max let the other operand win over NaN.
+                self.min[k] = self.min[k].min(p[k]);
+                self.max[k] = self.max[k].max(p[k]);
+            }
+        }
+    }
+
+    /// Four points are three vectors of four, in which every coordinate stays in its lane. Gives what is left over.
+    #[cfg(feature = "wide")]
+    fn add_groups<'a>(&mut self, points: &'a [[f32; 3]]) -> &'a [[f32; 3]] {
         let (groups, rest) = points.as_chunks::<4>();
         let (mut low, mut high) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
         for group in groups {
@@ -188,13 +201,11 @@ impl Bounds {
                 high[i] = if v > high[i] { v } else { high[i] };
             }
         }
-        let (low, high) = (low.as_chunks::<3>().0, high.as_chunks::<3>().0);
-        for p in low.iter().chain(rest) {
-            self.min = std::array::from_fn(|k| self.min[k].min(p[k]));
+        for i in 0..12 {
+            self.min[i % 3] = self.min[i % 3].min(low[i]);
+            self.max[i % 3] = self.max[i % 3].max(high[i]);
         }
-        for p in high.iter().chain(rest) {
-            self.max = std::array::from_fn(|k| self.max[k].max(p[k]));
-        }
+        rest
     }
 
     /// Whether there is anything inside.

@@ -9,6 +9,8 @@
 //!   pieces  |  buffer 0  |  buffer 1  | ...        cut anywhere between two faces
 //! ```
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable, cast_slice};
 
 use crate::corners::{Builder, Corner, Extra};
@@ -22,8 +24,8 @@ struct SharedVertex {
     normal: [i16; 2],
 }
 
-/// Vertices that are packed at once.
-const LANES: usize = 8;
+/// Vertices that are packed at once: where speed counts for more than size.
+const LANES: usize = if cfg!(feature = "wide") { 8 } else { 1 };
 
 /// A run of elements (indices or corners) that belongs to one part.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +76,8 @@ pub struct Packer {
     part_ends: Vec<u64>,
     next_point: usize,
     next_face: usize,
+    /// Points and faces.
+    all: usize,
     elements: u64,
     piece: usize,
     builder: Builder,
@@ -106,6 +110,7 @@ impl Packer {
             part_ends,
             next_point: 0,
             next_face: 0,
+            all: data.points.len() + data.faces.count(),
             elements: 0,
             piece: 0,
             builder: Builder::default(),
@@ -157,9 +162,8 @@ impl Packer {
     }
 
     /// Share of the work that is done, 0..=1.
-    pub fn progress(&self, data: &SurfaceData<'_>) -> f32 {
-        let all = data.points.len() + data.faces.count();
-        if all == 0 { 1.0 } else { (self.next_point + self.next_face) as f32 / all as f32 }
+    pub fn progress(&self) -> f32 {
+        if self.all == 0 { 1.0 } else { (self.next_point + self.next_face) as f32 / self.all as f32 }
     }
 
     fn points(&mut self, data: &SurfaceData<'_>, end: usize, out: &mut impl Sink) {
@@ -196,60 +200,54 @@ impl Packer {
     fn quads(
         &mut self,
         data: &SurfaceData<'_>,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         count: u32,
         [old, faces]: [u32; 2],
         out: &mut impl Sink,
     ) -> Result<(), Error> {
-        let mut indices = std::mem::take(&mut self.indices);
-        indices.clear();
-        let quads = data.faces.corners().as_chunks::<4>().0;
-        // Corners have to be old, edge, face and edge point: each in its range. Which is not is looked for afterwards.
+        let (mut indices, mut gathered) = (std::mem::take(&mut self.indices), Vec::new());
+        let (start, quads) = (range.start, data.faces.corners().as_chunks::<4>().0);
+        let own = match &self.order {
+            Some(order) => {
+                let listed = order.get(range).unwrap_or(&[]);
+                gathered.extend(listed.iter().filter_map(|&f| quads.get(f as usize)));
+                &gathered
+            }
+            None => quads.get(range).unwrap_or(&[]),
+        };
+        // Corners have to be old, edge, face and edge point: each in its range.
         let first = [0, faces, old, faces];
-        let wide = [old, count.saturating_sub(faces), faces.saturating_sub(old), count.saturating_sub(faces)];
+        let edges = count.saturating_sub(faces);
+        let wide = [old, edges, faces.saturating_sub(old), edges];
         let mut wrong = [false; 4];
-        let mut cut = |&quad: &[u32; 4]| {
+        indices.clear();
+        indices.extend(own.iter().map(|&quad| {
             for k in 0..4 {
                 wrong[k] |= quad[k].wrapping_sub(first[k]) >= wide[k];
             }
             let [a, b, c, d] = quad;
             [a, b, c, a, c, d]
-        };
-        let own = range.clone();
-        match &self.order {
-            Some(order) => {
-                let listed = order.get(range).unwrap_or(&[]);
-                indices.extend(listed.iter().filter_map(|&f| quads.get(f as usize)).map(cut));
-            }
-            None => indices.extend(quads.get(range).unwrap_or(&[]).iter().map(&mut cut)),
-        }
+        }));
         if wrong.contains(&true) {
-            return Err(self.wrong_quad(quads, own, [old, faces, count]));
+            // Which one is looked for now.
+            let is_wrong = |quad: &[u32; 4]| (0..4).any(|k| quad[k].wrapping_sub(first[k]) >= wide[k]);
+            let i = own.iter().position(is_wrong).unwrap_or_default();
+            let face = self.order.as_ref().and_then(|o| o.get(start + i)).map_or((start + i) as u64, |&f| f.into());
+            let past = own.get(i).and_then(|quad| (0..).zip(quad).find(|(_, v)| **v >= count));
+            return Err(match past {
+                Some((i, &index)) => Error::Index { corner: 4 * face + i, index, vertices: u64::from(count) },
+                None => Error::Order { face },
+            });
         }
         self.spill(6, (cast_slice(&indices), 4), &[], out);
         self.indices = indices;
         Ok(())
     }
 
-    /// What is wrong with the first quad of these that has a corner out of its range.
-    fn wrong_quad(&self, quads: &[[u32; 4]], range: std::ops::Range<usize>, [old, faces, count]: [u32; 3]) -> Error {
-        for i in range {
-            let f = self.order.as_ref().and_then(|order| order.get(i)).map_or(i, |&f| f as usize);
-            let Some(&[a, b, c, d]) = quads.get(f) else { continue };
-            if let Some((i, &index)) = [a, b, c, d].iter().enumerate().find(|(_, v)| **v >= count) {
-                return Error::Index { corner: (4 * f + i) as u64, index, vertices: u64::from(count) };
-            }
-            if a >= old || c < old || c >= faces || b < faces || d < faces {
-                return Error::Order { face: f as u64 };
-            }
-        }
-        Error::Order { face: 0 }
-    }
-
     fn corners(
         &mut self,
         data: &SurfaceData<'_>,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         out: &mut impl Sink,
     ) -> Result<(), Error> {
         let mut builder = std::mem::take(&mut self.builder);

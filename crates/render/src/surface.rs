@@ -48,15 +48,15 @@ impl Surface {
     pub fn reserve(gpu: &Gpu, shape: &[u32]) -> Surface {
         use wgpu::BufferUsages as U;
         let base = if cfg!(feature = "webgl") { U::COPY_DST } else { U::COPY_DST | U::STORAGE };
-        Surface::make(shape, |size, usage| outside(gpu, size, base | usage))
+        Surface::make(shape, &|size, usage| outside(gpu, size, base | usage))
     }
 
     /// A surface whose buffers are filled by the queue.
     pub(crate) fn packed(gpu: &Gpu, shape: &[u32]) -> Surface {
-        Surface::make(shape, |size, usage| buffer(gpu, "surface", size, usage | wgpu::BufferUsages::COPY_DST))
+        Surface::make(shape, &|size, usage| buffer(gpu, "surface", size, usage | wgpu::BufferUsages::COPY_DST))
     }
 
-    fn make(shape: &[u32], buffer: impl Fn(u64, wgpu::BufferUsages) -> wgpu::Buffer) -> Surface {
+    fn make(shape: &[u32], buffer: &dyn Fn(u64, wgpu::BufferUsages) -> wgpu::Buffer) -> Surface {
         use wgpu::BufferUsages as U;
         let [count, a, b, ends @ ..] = shape else { return Surface::make(&[0; 3], buffer) };
         let (layout, usage, [elements, bytes]) = if *b > 0 {

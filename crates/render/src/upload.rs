@@ -56,8 +56,8 @@ impl Upload {
     }
 
     /// Share of the work that is done, 0..=1.
-    pub fn progress(&self, data: &SurfaceData<'_>) -> f32 {
-        self.packer.progress(data)
+    pub fn progress(&self) -> f32 {
+        self.packer.progress()
     }
 
     /// The surface; whole only after [`Upload::step`] said true.
