@@ -12,7 +12,7 @@
 //! ```
 //!
 //! A run is stepped by the engine as it steps its own jobs: in slices of a few milliseconds, between which it takes messages
-//! and draws. Dropping the run cancels it. Cost beside refining: two copies of the mesh and one of the level.
+//! and draws. Dropping the run cancels it. Cost beside refining: two copies of the mesh, and one of the level.
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
 mod about;
