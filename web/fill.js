@@ -59,7 +59,7 @@ function target({ maker, buffers }) {
 /** A level on its way to the engine's buffers: `Drawing` of crates/engine/src/kernel.rs. */
 class Level {
   #filling = /** @type {Filling | null} */ (null);
-  #runs = new Uint32Array();
+  #runs = /** @type {Uint32Array} */ (new Uint32Array());
   #found = new Float32Array();
   #error = /** @type {unknown} */ (null);
   /** Milliseconds of refining, and of packing and writing. */

@@ -89,14 +89,7 @@ impl Remote {
 
     /// What makes a plan's level where it is drawn; none if that cannot be, or its buffers do not take it: then the level has to come
     /// here, or says why not.
-    pub fn draw(
-        &mut self,
-        mesh: &Arc<Mesh>,
-        plan: &Plan,
-        parts: &[u32],
-        budget: u64,
-        gpu: &Gpu,
-    ) -> Option<Drawing> {
+    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], budget: u64, gpu: &Gpu) -> Option<Drawing> {
         self.take(mesh).ok()?;
         let limits = gpu.device.limits();
         let groups = limits.max_compute_workgroups_per_dimension;

@@ -20,7 +20,8 @@ impl Buffers {
     /// Of a shape, before anything is written.
     fn new(shape: &[u32]) -> Buffers {
         let [count, a, b, ends @ ..] = shape else { panic!("{shape:?}") };
-        let mut out = Buffers { vertices: vec![0xff; if *b > 0 { *count as usize * 16 } else { 0 }], ..Buffers::default() };
+        let mut out =
+            Buffers { vertices: vec![0xff; if *b > 0 { *count as usize * 16 } else { 0 }], ..Buffers::default() };
         let mut first = 0;
         for end in ends {
             let faces = (end - first) as usize;
@@ -123,7 +124,8 @@ fn everything_else_is_drawn_as_corners() {
         let plan = plan(id, 3);
         let level = refine(&mesh, &plan, 1 << 30).unwrap();
         let (out, runs, _) = filled(&kernel, &plan, 1e9, &[]);
-        let corners: Vec<Corner> = out.pieces.iter().flat_map(|p| bytemuck::pod_collect_to_vec::<u8, Corner>(p)).collect();
+        let corners: Vec<Corner> =
+            out.pieces.iter().flat_map(|p| bytemuck::pod_collect_to_vec::<u8, Corner>(p)).collect();
         assert_eq!(runs, [0, corners.len() as u32]);
         let (normals, mut rest) = (level.normals(), &corners[..]);
         for f in 0..level.faces.count() {
@@ -131,7 +133,10 @@ fn everything_else_is_drawn_as_corners() {
             let (own, others) = rest.split_at(3 * (polygon.len() - 2));
             rest = others;
             for corner in own {
-                assert!(polygon.iter().any(|&v| level.points[v as usize] == corner.position), "face {f} of {name} by {id}");
+                assert!(
+                    polygon.iter().any(|&v| level.points[v as usize] == corner.position),
+                    "face {f} of {name} by {id}"
+                );
             }
             for &v in polygon {
                 let (point, normal) = (level.points[v as usize], pack::normal(normals[v as usize]));

@@ -239,7 +239,11 @@ mod tests {
             let mut bounds = Bounds::EMPTY;
             bounds.add_all(&points);
             let last = n as f32 - 1.0;
-            let expected = if n == 0 { [[f32::INFINITY, 5.0, 0.5], [f32::NEG_INFINITY, 5.0, 0.5]] } else { [[0.0, -last, 0.5], [last, 5.0, 2.0]] };
+            let expected = if n == 0 {
+                [[f32::INFINITY, 5.0, 0.5], [f32::NEG_INFINITY, 5.0, 0.5]]
+            } else {
+                [[0.0, -last, 0.5], [last, 5.0, 2.0]]
+            };
             assert_eq!([bounds.min, bounds.max], expected, "{n}");
         }
     }

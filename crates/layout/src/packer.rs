@@ -244,12 +244,7 @@ impl Packer {
         Ok(())
     }
 
-    fn corners(
-        &mut self,
-        data: &SurfaceData<'_>,
-        range: Range<usize>,
-        out: &mut impl Sink,
-    ) -> Result<(), Error> {
+    fn corners(&mut self, data: &SurfaceData<'_>, range: Range<usize>, out: &mut impl Sink) -> Result<(), Error> {
         let mut builder = std::mem::take(&mut self.builder);
         builder.corners.clear();
         builder.extras.clear();
@@ -268,7 +263,8 @@ impl Packer {
         const EXTRA: usize = size_of::<Extra>();
         let (mut done, count) = (0, bytes.len() / size);
         while done < count {
-            let first = self.piece.checked_sub(1).and_then(|i| self.shape.get(3 + i)).map_or(0, |&e| u64::from(e) * per);
+            let first =
+                self.piece.checked_sub(1).and_then(|i| self.shape.get(3 + i)).map_or(0, |&e| u64::from(e) * per);
             let last = self.shape.get(3 + self.piece).map_or(u64::MAX, |&e| u64::from(e) * per);
             let room = last.saturating_sub(self.elements) as usize;
             if room == 0 {

@@ -5,9 +5,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::error::mismatch;
 use crate::pipelines::{Kind, Pipelines, TEXTURE};
 use crate::target::texture_group;
-use crate::error::mismatch;
 use crate::{Error, Gpu};
 
 /// What a part of the surface is made of.

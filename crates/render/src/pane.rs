@@ -9,8 +9,8 @@ use crate::overlay::Instances;
 use crate::pipelines::Pipelines;
 use crate::style::Frame;
 use crate::surface::{Surface, buffer};
-use limn_layout::Run;
 use crate::uniform::{Globals, Viewer};
+use limn_layout::Run;
 
 /// One draw of the surface: a stretch of a chunk with one material.
 pub(crate) struct Stretch {

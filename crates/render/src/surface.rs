@@ -71,7 +71,8 @@ impl Surface {
         let chunk = |&end: &u32| {
             let count = u64::from(end) * elements - first;
             let extra = |size| extras.then(|| buffer(count * size, usage));
-            let chunk = Chunk { buffer: buffer(count * bytes, usage), extra: extra(size_of::<Extra>() as u64), first, count };
+            let chunk =
+                Chunk { buffer: buffer(count * bytes, usage), extra: extra(size_of::<Extra>() as u64), first, count };
             first += count;
             chunk
         };

@@ -279,7 +279,10 @@ fn the_cage_shows_fully_in_front_and_faintly_behind() {
     for (at, seen) in [([32, 16], true), ([26, 16], true), ([38, 16], true), ([32, 10], true), ([41, 16], false)] {
         assert_eq!(near(p.at(at[0], at[1]), [255, 0, 0, 255], 3), seen, "{at:?}: {:?}", p.at(at[0], at[1]));
     }
-    assert_eq!(r.set_cage(&points, &[[0, 1], [2, 7]], &[]), Err(Data::Index { corner: 3, index: 7, vertices: 4 }.into()));
+    assert_eq!(
+        r.set_cage(&points, &[[0, 1], [2, 7]], &[]),
+        Err(Data::Index { corner: 3, index: 7, vertices: 4 }.into())
+    );
 }
 
 #[test]
