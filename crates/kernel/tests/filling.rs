@@ -65,6 +65,10 @@ fn filled(kernel: &Kernel, plan: &Plan, limit: f64, parts: &[u32]) -> (Buffers, 
     (out, filling.runs(), filling.bounds())
 }
 
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    (0..3).map(|k| a[k] * b[k]).sum()
+}
+
 fn is_level(out: &Buffers, level: &Refined, what: &str) {
     let vertices: &[[u8; 16]] = bytemuck::cast_slice(&out.vertices);
     assert_eq!(vertices.len(), level.points.len(), "{what}");
@@ -73,8 +77,7 @@ fn is_level(out: &Buffers, level: &Refined, what: &str) {
         let position: [f32; 3] = bytemuck::pod_read_unaligned(&bytes[..12]);
         assert_eq!(position, *point, "vertex {v} of {what}");
         let found = pack::unpack_normal(bytemuck::pod_read_unaligned(&bytes[12..]));
-        let cosine: f32 = (0..3).map(|k| found[k] * normal[k]).sum();
-        assert!(cosine > 0.999, "normal {v} of {what}: {found:?}, not {normal:?}");
+        assert!(dot(found, *normal) > 0.999, "normal {v} of {what}: {found:?}, not {normal:?}");
     }
     let indices: Vec<u32> = out.pieces.iter().flat_map(|p| bytemuck::pod_collect_to_vec::<u8, u32>(p)).collect();
     let Faces::Quads(quads) = &level.faces else { panic!("no quads: {what}") };
@@ -139,8 +142,9 @@ fn everything_else_is_drawn_as_corners() {
                 );
             }
             for &v in polygon {
-                let (point, normal) = (level.points[v as usize], pack::normal(normals[v as usize]));
-                let found = own.iter().any(|c| (c.position, c.normal) == (point, normal));
+                let (point, normal) = (level.points[v as usize], normals[v as usize]);
+                let along = |c: &Corner| dot(pack::unpack_normal(c.normal), normal) > 0.999;
+                let found = own.iter().any(|c| c.position == point && along(c));
                 assert!(found, "vertex {v} of face {f} of {name} by {id}");
             }
         }
