@@ -80,10 +80,10 @@ impl Filling {
     pub fn advance(&mut self, rows: usize, out: &mut impl Sink) -> Result<bool, String> {
         let corners = self.shape.get(2) == Some(&0);
         let parts = (&self.parts[..], &self.part_of[..]);
-        if let Some(job) = &mut self.job {
-            if !job.step(rows) {
-                return Ok(false);
-            }
+        if let Some(job) = &mut self.job
+            && !job.step(rows)
+        {
+            return Ok(false);
         }
         if let Some(job) = self.job.take() {
             let refined = job.finish();

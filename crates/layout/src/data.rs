@@ -181,10 +181,9 @@ impl Bounds {
         #[cfg(feature = "wide")]
         let points = self.add_groups(points);
         for p in points {
-            for k in 0..3 {
-                // min and max let the other operand win over NaN.
-                self.min[k] = self.min[k].min(p[k]);
-                self.max[k] = self.max[k].max(p[k]);
+            // min and max let the other operand win over NaN.
+            for ((min, max), &v) in self.min.iter_mut().zip(&mut self.max).zip(p) {
+                (*min, *max) = (min.min(v), max.max(v));
             }
         }
     }
