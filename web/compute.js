@@ -3,8 +3,9 @@
 //
 //   plan ──> buffers, pipelines ──> one compute pass: half-edges, points, normals, indices ──> box read back
 //
-// The engine draws from some of the buffers and makes them itself; wgpu does not hand out what it made, so buffers labelled
-// `refined` are noted here as they are created, and with them the device (`watch`). Loaded with the kernel, on WebGPU alone.
+// The engine draws from some of the buffers and makes them itself (web/fill.js). Loaded with the kernel, where the GPU is to refine.
+
+import { note, noted } from "./noted.js";
 
 /**
  * `Listed` of crates/kernel/src/drawing.rs.
@@ -13,8 +14,6 @@
  *   shaders: { entry: string, source: string, access: [number[], number[]] }[], once: Dispatch[], each: Dispatch[],
  *   cage: number, vertices: number, count: number, bounds: number | undefined }} Plan
  * @typedef {{ shape(): Uint32Array, runs(): Uint32Array, points(): Float32Array<ArrayBuffer>, contents(id: number): Uint8Array<ArrayBuffer>, plan(): Plan, free(): void }} Drawing
- * @typedef {{ mesh(bytes: Uint8Array): void, start(plan: Uint8Array, budget: number): object,
- *   draw(plan: Uint8Array, buffer: number, groups: number, parts: Uint32Array, rows: boolean): Drawing | undefined }} Kernel
  */
 
 // The numbers of WebGPU's GPUBufferUsage.
@@ -187,30 +186,11 @@ export class Refiner {
   }
 }
 
-/** What the engine made last to be filled, and the device that it made it on. @type {{ device: GPUDevice | null, buffers: GPUBuffer[] }} */
-const noted = { device: null, buffers: [] };
-let watched = false;
-
-/** Notes buffers labelled `refined` from now on. */
-function watch() {
-  if (watched) return;
-  watched = true;
-  const create = GPUDevice.prototype.createBuffer;
-  GPUDevice.prototype.createBuffer = function (descriptor) {
-    const buffer = create.call(this, descriptor);
-    if (descriptor.label === "refined") {
-      noted.device = this;
-      noted.buffers.push(buffer);
-    }
-    return buffer;
-  };
-}
-
 /** @type {WeakMap<GPUDevice, Runner>} */
 const runners = new WeakMap();
 
 /** A plan of the engine's on its way to the buffers that it draws from: `Drawing` of crates/engine/src/kernel.rs. */
-class Picture {
+export class Picture {
   #refiner = /** @type {Refiner | null} */ (null);
   #runs;
   #box = new Float32Array();
@@ -224,6 +204,7 @@ class Picture {
   }
 
   shape() {
+    note();
     return this.drawing.shape();
   }
 
@@ -232,8 +213,8 @@ class Picture {
   }
 
   run() {
-    const [device, drawn] = [noted.device, noted.buffers.splice(0)];
-    this.#run(device, drawn).catch((error) => (this.#error = error)).finally(() => {
+    const { maker, buffers } = noted();
+    this.#run(/** @type {GPUDevice | null} */ (maker), /** @type {GPUBuffer[]} */ (buffers)).catch((error) => (this.#error = error)).finally(() => {
       this.drawing.free();
       // Editing the cage would want the rest again.
       this.#refiner?.free();
@@ -258,6 +239,14 @@ class Picture {
     if (this.#error) throw this.#error;
     return this.#box;
   }
+
+  /** Nobody can tell how far a GPU is. */
+  progress() {
+    return 0;
+  }
+
+  /** What was submitted runs to its end. */
+  stop() {}
 }
 
 /** As `limn_compute::bounds`; where no point is finite the lowest are above the highest. @param {Uint32Array} words */
@@ -265,41 +254,4 @@ function decode(words) {
   if (!words[3]) return new Float32Array([1, 1, 1, -1, -1, -1]);
   const ordered = words.map((word, i) => (i < 3 ? ~word : word));
   return new Float32Array(ordered.map((o) => (o >>> 31 ? o & 0x7fffffff : ~o)).buffer);
-}
-
-/**
- * What the GPU refines. A scheme that has kernels of its own, unless the adapter is a program: level 5 of the creature takes that
- * some seconds, and the CPU's patches a twentieth of one. Others go by rows, which cost the CPU more to make than the level itself: for
- * a cage that will move they pay, for showing a level once they do not. The page's address decides it otherwise: `compute=off`
- * is nothing, `compute=on` all there is, by rows where there are no kernels.
- * @returns {Promise<"nothing" | "kernels" | "all">}
- */
-async function wanted() {
-  const wish = new URLSearchParams(location.search).get("compute");
-  if (wish) return wish === "on" ? "all" : "nothing";
-  const adapter = await navigator.gpu.requestAdapter();
-  // Where browsers told it before.
-  const isProgram = adapter?.info.isFallbackAdapter ?? Reflect.get(adapter ?? {}, "isFallbackAdapter") === true;
-  return isProgram ? "nothing" : "kernels";
-}
-
-/**
- * The kernel for an engine that draws with WebGPU: it refines there what it can. `wake` is called when something is ready.
- * @param {Kernel} kernel @param {() => void} wake
- */
-export async function attach(kernel, wake) {
-  watch();
-  const what = await wanted();
-  let works = what !== "nothing";
-  return {
-    mesh: (/** @type {Uint8Array} */ bytes) => kernel.mesh(bytes),
-    start: (/** @type {Uint8Array} */ plan, /** @type {number} */ budget) => kernel.start(plan, budget),
-    draw: (/** @type {Uint8Array} */ plan, /** @type {number} */ buffer, /** @type {number} */ groups, /** @type {Uint32Array} */ parts) => {
-      const drawing = works ? kernel.draw(plan, buffer, groups, parts, what === "all") : undefined;
-      return drawing && new Picture(drawing, (failed) => {
-        works &&= !failed;
-        wake();
-      });
-    },
-  };
 }

@@ -96,7 +96,7 @@ export function createHost(post) {
       // Another address each time: a browser may keep what failed, and a module that ran out of memory is of no more use.
       const { Kernel } = await load((await import("./vectors.js")).KERNEL, tries ? `?${tries}` : "");
       const kernel = new Kernel();
-      made = drawsOn === "webgpu" ? await (await import("./compute.js")).attach(kernel, () => enter((e) => e.work(0))) : kernel;
+      made = await (await import("./fill.js")).attach(kernel, drawsOn, () => enter((e) => e.work(0)));
     } catch {}
     tries += 1;
     loading = false;

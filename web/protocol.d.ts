@@ -264,13 +264,13 @@ export interface WasmModule {
       emit: (message: never) => void,
     ): Promise<Engine>;
   };
-  Kernel: new () => import("./compute.js").Kernel;
+  Kernel: new () => import("./fill.js").Kernel;
   /** What is to be told of a scheme, as JSON: crates/kernel/src/about.rs. */
   about(id: string, values: Float64Array, valence: number): string;
 }
 
 /** Refines by every scheme; only the engine calls it: crates/kernel/src/lib.rs. */
-export type Kernel = import("./compute.js").Kernel | Awaited<ReturnType<typeof import("./compute.js").attach>>;
+export type Kernel = Awaited<ReturnType<typeof import("./fill.js").attach>>;
 
 /** The engine's calls: crates/engine/src/engine/mod.rs says what each does. */
 export interface Engine {

@@ -23,8 +23,6 @@
 //! their rounding: at most 3e-7 of the box in Chromium's software WebGPU (`tests/browser/compute.test.mjs` prints it).
 
 mod cage;
-#[path = "../../render/src/edge_flags.rs"]
-mod edge_flags;
 mod error;
 mod finish;
 mod fused;
@@ -34,8 +32,6 @@ mod patch;
 mod plan;
 pub mod program;
 mod rows;
-#[path = "../../render/src/srgb.rs"]
-mod srgb;
 #[path = "../../render/src/wgsl.rs"]
 mod wgsl;
 

@@ -8,11 +8,11 @@
 //! Texture coordinates and colours do not move with the cage, so they come from the level that the CPU made, by whatever rules. Triangles
 //! lie in the order of their parts, so that a part is one run. Cost: linear in the level.
 
-use crate::edge_flags::edge_flags;
+use crate::Error;
 use crate::finish::{Drawn, Piece};
 use crate::kernels::{Kernel, Level};
 use crate::program::{Builder, Dispatch, Id};
-use crate::{Error, srgb};
+use limn_layout::corners::edge_flags;
 use limn_mesh::{Faces, Refined, triangulate};
 
 /// The faces around every vertex: where each run begins and ends, and the faces.
@@ -118,7 +118,7 @@ impl Triangles {
                     uv.values.get(*at as usize).copied()
                 };
                 let [u, v_up] = level.uv.as_ref().and_then(value).unwrap_or_default();
-                let color = level.colors.get(v as usize).map_or([255; 4], |&c| srgb::color(c));
+                let color = level.colors.get(v as usize).map_or([255; 4], |&c| limn_layout::pack::color(c));
                 words.extend([u.to_bits(), v_up.to_bits(), u32::from_le_bytes(color)]);
             }
         }

@@ -10,7 +10,7 @@ use limn_mesh::{Large, Mesh, Plan, Refined};
 use limn_render::Gpu;
 use wasm_bindgen::prelude::*;
 
-use crate::making::{Gpus, Work};
+use crate::making::{Filler, Work};
 
 #[wasm_bindgen]
 extern "C" {
@@ -21,9 +21,16 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     fn start(this: &Kernel, plan: &[u8], budget: f64) -> Result<Run, JsValue>;
     #[wasm_bindgen(method, catch)]
-    fn draw(this: &Kernel, plan: &[u8], buffer: f64, groups: u32, parts: &[u32]) -> Result<Option<Drawing>, JsValue>;
+    fn draw(
+        this: &Kernel,
+        plan: &[u8],
+        buffer: f64,
+        groups: u32,
+        parts: &[u32],
+        budget: f64,
+    ) -> Result<Option<Drawing>, JsValue>;
 
-    /// `Picture` of `web/compute.js`: a plan that the GPU refines.
+    /// A level on its way to buffers: `Picture` of `web/compute.js`, which the GPU refines, or of `web/fill.js`.
     pub type Drawing;
     /// What [`limn_render::Surface::reserve`] makes buffers of.
     #[wasm_bindgen(method)]
@@ -34,9 +41,15 @@ extern "C" {
     /// Fills the buffers that were made last.
     #[wasm_bindgen(method)]
     pub fn run(this: &Drawing);
-    /// The box of the points; empty while the GPU is at work.
+    /// The box of the points; empty while they are made. Behind it the milliseconds of refining and of filling, if the CPU did it.
     #[wasm_bindgen(method, catch)]
-    pub fn bounds(this: &Drawing) -> Result<Vec<f32>, JsValue>;
+    fn bounds(this: &Drawing) -> Result<Vec<f32>, JsValue>;
+    /// How much is done, 0 to 1.
+    #[wasm_bindgen(method)]
+    fn progress(this: &Drawing) -> f32;
+    /// Nobody waits for it any more.
+    #[wasm_bindgen(method)]
+    fn stop(this: &Drawing);
 
     /// `Run` of `crates/kernel`.
     type Run;
@@ -74,12 +87,16 @@ impl Remote {
         Ok(Box::new(Away { run: Some(run), mesh: mesh.clone() }))
     }
 
-    /// What the GPU does for a plan; none if it cannot, or its buffers do not take it: then the CPU has to, or says why not.
-    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], gpu: &Gpu) -> Option<Drawing> {
+    /// What makes a plan's level where it is drawn; none if that cannot be, or its buffers do not take it: then the level has to come
+    /// here, or says why not.
+    pub fn draw(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &[u32], budget: u64, gpu: &Gpu) -> Option<Drawing> {
         self.take(mesh).ok()?;
         let limits = gpu.device.limits();
-        let buffer = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        self.kernel.draw(&plan.pack(), buffer as f64, limits.max_compute_workgroups_per_dimension, parts).ok()?
+        let groups = limits.max_compute_workgroups_per_dimension;
+        // WebGL2 has no storage buffers, and nobody there who would bind them.
+        let storage = if cfg!(feature = "webgl") { u64::MAX } else { limits.max_storage_buffer_binding_size };
+        let buffer = limits.max_buffer_size.min(storage);
+        self.kernel.draw(&plan.pack(), buffer as f64, groups, parts, budget as f64).ok()?
     }
 
     fn take(&mut self, mesh: &Arc<Mesh>) -> Result<(), String> {
@@ -125,13 +142,26 @@ impl Work for Away {
     }
 }
 
-impl Gpus for Drawing {
+/// A level that is made where it is drawn, until it is there or dropped.
+pub struct Elsewhere(pub Drawing);
+
+impl Filler for Elsewhere {
     fn bounds(&self) -> Option<Vec<f32>> {
-        Drawing::bounds(self).ok()
+        self.0.bounds().ok()
     }
 
     fn runs(&self) -> Vec<u32> {
-        Drawing::runs(self)
+        self.0.runs()
+    }
+
+    fn progress(&self) -> f32 {
+        self.0.progress()
+    }
+}
+
+impl Drop for Elsewhere {
+    fn drop(&mut self) {
+        self.0.stop();
     }
 }
 

@@ -4,8 +4,8 @@
 //!   Making ── step ──► Refine (points, faces) ── step ──► Build (normals, buffers) ──► Made
 //! ```
 //!
-//! Who refines is a [`Work`]: a job of this module, or a run of the one with every scheme. Where the GPU does it, a [`Gpus`] waits for
-//! buffers that are filled there, and the level that is [`Made`] has no points here.
+//! Who refines is a [`Work`]: a job of this module, or a run of the one with every scheme. Where that module, or the GPU, fills the
+//! buffers itself, a [`Filler`] is waited for, and the level that is [`Made`] has no points here.
 //!
 //! Nothing of what is shown changes until a step gives [`Made`]; dropping a [`Making`] is all that cancelling takes. Flat
 //! shading of small models takes the corner layout, which has one normal a polygon: that changes buffers only, so
@@ -14,7 +14,7 @@
 use std::sync::Arc;
 
 use limn_document::Document;
-use limn_mesh::{Job, Mesh, NONE, Plan, Refined, order, triangulate};
+use limn_mesh::{Job, Mesh, NONE, Plan, Refined, order};
 use limn_render::{Bounds, Error, Part, Renderer, Surface, SurfaceData, Upload};
 
 /// Rows of refinement, or elements of an upload, between two looks at the clock: about half a millisecond.
@@ -84,7 +84,7 @@ pub struct Made {
 }
 
 impl Made {
-    /// Whether the level's points are on the GPU alone.
+    /// Whether the level's points are on the GPU alone, whoever refined it.
     pub fn is_away(&self) -> bool {
         self.refined.points.is_empty()
     }
@@ -108,26 +108,7 @@ impl Made {
 
     /// Calls `with` with the surface as the renderer takes it.
     fn data<T>(&self, with: impl FnOnce(&SurfaceData<'_>) -> T) -> T {
-        use limn_mesh::Faces as F;
-        use limn_render::Faces as G;
-        let r = &*self.refined;
-        let faces = match &r.faces {
-            F::Polygons { offsets, corners } => G::Polygons { offsets, corners },
-            F::Triangles(corners) => G::Triangles(corners),
-            F::Quads(corners) => G::Quads(corners),
-        };
-        let part_of = |f: usize| self.parts.of_face.get(r.face_source(f as u32) as usize).copied().unwrap_or(0);
-        let mut data = SurfaceData::new(&r.points, self.normals(), faces);
-        data.parents = r.parents();
-        data.uv = r.uv.as_ref().map(|uv| (&uv.values[..], &uv.corners[..]));
-        data.colors = &r.colors;
-        data.parts = &self.parts.list;
-        data.part_of = (!self.parts.of_face.is_empty()).then_some(&part_of);
-        let kind_of = |f: usize| r.kinds.get(f).map_or(0, |kind| *kind as u32 + 1);
-        data.kind_of = (!r.kinds.is_empty()).then_some(&kind_of);
-        data.triangulate = triangulate;
-        data.force_corners = self.corners;
-        with(&data)
+        limn_layout::level(&self.refined, self.normals(), (&self.parts.list, &self.parts.of_face), self.corners, with)
     }
 }
 
@@ -147,12 +128,15 @@ pub trait Work {
     fn finish(self: Box<Self>) -> Result<Refined, String>;
 }
 
-/// A level that the GPU refines, into a surface's own buffers.
-pub trait Gpus {
-    /// The box of the points, lowest coordinates first; empty while it is at work. None: it failed, and the CPU has to do it.
+/// Who makes a level in a surface's own buffers, at its own pace.
+pub trait Filler {
+    /// The box of the points, lowest coordinates first; empty while it is at work. Behind it the milliseconds of refining and of filling, if
+    /// the CPU did it. None: it failed, and the level has to come here.
     fn bounds(&self) -> Option<Vec<f32>>;
     /// The runs of parts.
     fn runs(&self) -> Vec<u32>;
+    /// How much is done, 0 to 1.
+    fn progress(&self) -> f32;
 }
 
 impl Work for Job {
@@ -172,7 +156,7 @@ impl Work for Job {
 enum Stage {
     Refine(Box<dyn Work>),
     /// Since when.
-    Wait(Box<dyn Gpus>, Surface, Made, f64),
+    Wait(Box<dyn Filler>, Surface, Made, f64),
     Build(Made, Option<Box<Upload>>),
     Over,
 }
@@ -186,6 +170,8 @@ pub struct Making {
     stage: Stage,
     /// Milliseconds spent on refining, and on normals and buffers.
     pub spent: [f64; 2],
+    /// Whether the GPU refined it.
+    pub on_gpu: bool,
 }
 
 /// What a step came to.
@@ -202,12 +188,12 @@ pub enum Step {
 impl Making {
     /// Begins with refining: `work` makes `plan` of `mesh`.
     pub fn refine(work: Box<dyn Work>, mesh: Arc<Mesh>, plan: Plan, corners: bool, parts: Arc<Parts>) -> Making {
-        Making { mesh, plan, corners, parts, stage: Stage::Refine(work), spent: [0.0; 2] }
+        Making { mesh, plan, corners, parts, stage: Stage::Refine(work), spent: [0.0; 2], on_gpu: false }
     }
 
-    /// Begins to wait for the GPU, which refines into `surface` since `now`.
+    /// Begins to wait for who fills `surface` since `now`.
     pub fn wait(
-        gpu: Box<dyn Gpus>,
+        filler: Box<dyn Filler>,
         surface: Surface,
         refined: Refined,
         plan: Plan,
@@ -217,13 +203,13 @@ impl Making {
         let (mesh, normals) = (refined.mesh().clone(), Arc::default());
         let made =
             Made { refined: Arc::new(refined), plan: plan.clone(), corners: false, normals, parts: parts.clone() };
-        let stage = Stage::Wait(gpu, surface, made, now);
-        Making { mesh, plan, corners: false, parts, stage, spent: [0.0; 2] }
+        let stage = Stage::Wait(filler, surface, made, now);
+        Making { mesh, plan, corners: false, parts, stage, spent: [0.0; 2], on_gpu: false }
     }
 
-    /// Whether there is nothing to do before the GPU is ready.
+    /// Whether there is nothing to do before the buffers are filled.
     pub fn waits(&self) -> bool {
-        matches!(&self.stage, Stage::Wait(gpu, ..) if gpu.bounds().is_some_and(|b| b.is_empty()))
+        matches!(&self.stage, Stage::Wait(filler, ..) if filler.bounds().is_some_and(|b| b.is_empty()))
     }
 
     /// Begins with the points of `made`, for the other layout.
@@ -236,6 +222,7 @@ impl Making {
             parts: made.parts.clone(),
             stage: Stage::Build(made, None),
             spent: [0.0; 2],
+            on_gpu: false,
         }
     }
 
@@ -257,10 +244,10 @@ impl Making {
     /// The share that is done, 0..=1; two thirds are for refining.
     pub fn progress(&self) -> f32 {
         match &self.stage {
-            Stage::Wait(..) => 0.0,
+            Stage::Wait(filler, ..) => filler.progress(),
             Stage::Refine(work) => work.progress() * 0.66,
             Stage::Build(_, None) => 0.66,
-            Stage::Build(made, Some(upload)) => 0.7 + 0.3 * made.data(|data| upload.progress(data)),
+            Stage::Build(_, Some(upload)) => 0.7 + 0.3 * upload.progress(),
             Stage::Over => 1.0,
         }
     }
@@ -273,13 +260,17 @@ impl Making {
         let start = clock();
         let stage = std::mem::replace(&mut self.stage, Stage::Over);
         let (next, kind) = match stage {
-            Stage::Wait(gpu, mut surface, made, since) => match gpu.bounds().as_deref() {
-                Some(&[a, b, c, d, e, f]) => {
-                    self.spent[0] = start - since;
-                    surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, &made.parts.list, &gpu.runs());
+            Stage::Wait(filler, mut surface, made, since) => match filler.bounds().as_deref() {
+                Some(&[a, b, c, d, e, f, ref spent @ ..]) => {
+                    self.on_gpu = spent.is_empty();
+                    self.spent = match *spent {
+                        [refine, fill, ..] => [refine.into(), fill.into()],
+                        _ => [start - since, 0.0],
+                    };
+                    surface.settle(Bounds { min: [a, b, c], max: [d, e, f] }, &made.parts.list, &filler.runs());
                     return Ok(Step::Done(made, surface));
                 }
-                Some(_) => (Stage::Wait(gpu, surface, made, since), 1),
+                Some(_) => (Stage::Wait(filler, surface, made, since), 1),
                 None => return Ok(Step::Failed),
             },
             Stage::Refine(mut work) => {

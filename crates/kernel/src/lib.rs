@@ -7,15 +7,17 @@
 //!   engine ── mesh as bytes, once a mesh ──>  Kernel
 //!          ── plan as bytes ───────────────>  Kernel::start ──> Run: step, step, ...
 //!          <── level as bytes ──────────────  Run::finish, and its arrays one by one: Run::large
+//!          ── plan as bytes ───────────────>  Kernel::fill ──> Filling: the level as it is drawn, into the GPU's buffers
 //!          ── plan as bytes ───────────────>  Kernel::draw ──> Drawing: what the GPU does, where it can
 //! ```
 //!
 //! A run is stepped by the engine as it steps its own jobs: in slices of a few milliseconds, between which it takes messages
-//! and draws. Dropping the run cancels it. Cost beside refining: two copies of the mesh and one of the level.
+//! and draws. Dropping the run cancels it. Cost beside refining: two copies of the mesh, and one of the level.
 //! Limit: this module has 4 GB of its own, and the memory of the largest level stays with it.
 
 mod about;
 mod drawing;
+mod filling;
 #[cfg(feature = "trial")]
 pub mod trial;
 
@@ -23,7 +25,9 @@ use std::sync::Arc;
 
 pub use about::about;
 pub use drawing::Drawing;
+pub use filling::Filling;
 
+use filling::Spare;
 use limn_compute::Limits;
 use limn_mesh::{Job, Mesh, Plan, Refined};
 #[cfg(target_arch = "wasm32")]
@@ -34,6 +38,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 pub struct Kernel {
     mesh: Option<Arc<Mesh>>,
+    spare: Spare,
 }
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
@@ -59,11 +64,20 @@ impl Kernel {
     /// # Errors
     /// One sentence: [`limn_mesh::RefineError`], or the bytes are no plan, or there is no mesh.
     pub fn start(&self, plan: &[u8], budget: f64) -> Result<Run, String> {
-        let mesh = self.mesh.clone().ok_or("there is no mesh to refine")?;
-        let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
-        Job::new(mesh, plan, budget as u64)
-            .map(|job| Run { job: Some(job.shaded()), level: None })
-            .map_err(|e| e.to_string())
+        // Two levels are not held at once.
+        self.spare.take();
+        let (_, job) = self.job(plan, budget)?;
+        Ok(Run { job: Some(job), level: None })
+    }
+
+    /// Begins to refine the mesh by a packed plan, with at most `budget` bytes, into buffers of up to `limit` bytes; none if what is drawn of
+    /// it has to be packed from the level. `parts` are those of the file's faces, empty if there is one.
+    ///
+    /// # Errors
+    /// As [`Kernel::start`].
+    pub fn fill(&self, plan: &[u8], budget: f64, limit: f64, parts: &[u32]) -> Result<Option<Filling>, String> {
+        let (mesh, job) = self.job(plan, budget)?;
+        Ok(Filling::new(job, &mesh, limit as u64, parts, &self.spare))
     }
 
     /// What a GPU does for a packed plan, whose buffers take up to so many bytes and whose dispatches so many groups a dimension: by
@@ -89,6 +103,15 @@ impl Kernel {
             made => made,
         };
         Ok(made.map_err(|e| e.to_string())?.map(|program| Drawing::new(program, &mesh.positions)))
+    }
+}
+
+impl Kernel {
+    fn job(&self, plan: &[u8], budget: f64) -> Result<(Arc<Mesh>, Job), String> {
+        let mesh = self.mesh.clone().ok_or("there is no mesh to refine")?;
+        let plan = Plan::unpack(plan).map_err(|e| e.to_string())?;
+        let job = Job::new(mesh.clone(), plan, budget as u64).map_err(|e| e.to_string())?;
+        Ok((mesh, job.shaded()))
     }
 }
 

@@ -267,9 +267,22 @@ impl Job {
 
     /// Counts of the last level.
     #[cfg(feature = "full")]
-    fn last_counts(&self) -> Counts {
-        let all = self.steps.iter().try_fold(self.mesh.counts(), |counts, step| step.split.counts(counts));
+    pub fn last_counts(&self) -> Counts {
+        self.counts_after(self.steps.len())
+    }
+
+    #[cfg(feature = "full")]
+    fn counts_after(&self, steps: usize) -> Counts {
+        let all = self.steps.iter().take(steps).try_fold(self.mesh.counts(), |counts, step| step.split.counts(counts));
         all.unwrap_or_default()
+    }
+
+    /// [`Refined::parent_ranges`] of the level that is made.
+    #[cfg(feature = "full")]
+    pub fn parent_ranges(&self) -> Option<[u32; 2]> {
+        let before = self.counts_after(self.steps.len().checked_sub(1)?);
+        let [v, f] = [before.vertices as u32, before.faces as u32];
+        (self.steps.last()?.split == Split::Quad).then_some([v, v + f])
     }
 
     /// Makes every level from the one before, where patches would make the last ones at once (`patch/`): the slow twin of these.

@@ -56,36 +56,18 @@ pub enum Error {
         /// Largest side in pixels.
         limit: u32,
     },
-    /// Slices that do not belong together.
-    #[error("{what}: {found} were given where {expected} are needed")]
-    Mismatch {
-        /// Which slice.
-        what: &'static str,
-        /// Elements found.
-        found: u64,
-        /// Elements expected.
-        expected: u64,
-    },
-    /// An index past the end of the points.
-    #[error("corner {corner} refers to vertex {index}, but there are {vertices} vertices")]
-    Index {
-        /// Corner number in the slice.
-        corner: u64,
-        /// The index found there.
-        index: u32,
-        /// Number of vertices.
-        vertices: u64,
-    },
-    /// Quads that claim to come from a quad split but are not in its order.
-    #[error("face {face} is not an old vertex, an edge point, a face point and an edge point; give no parent ranges")]
-    Order {
-        /// The face.
-        face: u64,
-    },
+    /// Slices that make no surface.
+    #[error(transparent)]
+    Data(#[from] limn_layout::Error),
     /// Reading a picture back failed.
     #[error("the picture could not be read back from the graphics adapter: {0}")]
     Readback(String),
     /// The device was lost and everything on it must be built again.
     #[error("the graphics device was lost ({0}); it has to be opened again")]
     Lost(String),
+}
+
+/// So many of something where there have to be others.
+pub(crate) fn mismatch(what: &'static str, found: u64, expected: u64) -> Error {
+    limn_layout::Error::Mismatch { what, found, expected }.into()
 }

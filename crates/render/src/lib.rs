@@ -19,8 +19,6 @@
 //! texture coordinates and colours). Limits: a buffer never exceeds the adapter's `max_buffer_size`; what can be split
 //! into several draws is split, and what cannot is refused with the numbers ([`Error::TooLarge`]).
 
-pub mod corners;
-mod edge_flags;
 mod error;
 mod gpu;
 mod ground;
@@ -28,14 +26,12 @@ mod image;
 mod light;
 mod material;
 pub mod overlay;
-pub mod pack;
 mod pane;
 mod pipelines;
 #[cfg(feature = "compute")]
 pub mod refine;
 mod renderer;
 mod screen;
-mod srgb;
 mod style;
 pub mod surface;
 mod target;
@@ -43,9 +39,9 @@ mod uniform;
 mod upload;
 mod wgsl;
 
+pub use limn_layout::{Triangulate, corners, pack};
 pub use wgpu;
 
-pub use corners::Triangulate;
 pub use error::Error;
 pub use gpu::{Gpu, Tier};
 pub use material::{Material, TextureData};

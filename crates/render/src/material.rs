@@ -5,6 +5,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::error::mismatch;
 use crate::pipelines::{Kind, Pipelines, TEXTURE};
 use crate::target::texture_group;
 use crate::{Error, Gpu};
@@ -93,11 +94,8 @@ impl Materials {
             let made = make(gpu, i, data.width, data.height)?;
             let bytes = u64::from(data.width) * u64::from(data.height) * 4;
             if data.rgba.len() as u64 != bytes {
-                return Err(Error::Mismatch {
-                    what: "bytes of a texture",
-                    found: data.rgba.len() as u64,
-                    expected: bytes,
-                });
+                let found = data.rgba.len() as u64;
+                return Err(mismatch("bytes of a texture", found, bytes));
             }
             write(gpu, &made, *data);
             halve(gpu, pipelines, &made);

@@ -53,7 +53,7 @@ impl Instances {
         Self::fill(gpu, edges.len(), |i| {
             let mut line = [0.0f32; 7];
             for (end, &v) in edges.get(i).unwrap_or(&[0; 2]).iter().enumerate() {
-                let point = points.get(v as usize).ok_or(Error::Index {
+                let point = points.get(v as usize).ok_or(limn_layout::Error::Index {
                     corner: (2 * i + end) as u64,
                     index: v,
                     vertices: points.len() as u64,

@@ -8,8 +8,9 @@ use crate::ground::{Placement, Shadow};
 use crate::overlay::Instances;
 use crate::pipelines::Pipelines;
 use crate::style::Frame;
-use crate::surface::{Run, Surface, buffer};
+use crate::surface::{Surface, buffer};
 use crate::uniform::{Globals, Viewer};
+use limn_layout::Run;
 
 /// One draw of the surface: a stretch of a chunk with one material.
 pub(crate) struct Stretch {

@@ -10,6 +10,7 @@
 use limn_compute::program::{Buffer, Dispatch, Limits, Program, Role, Shader};
 use limn_compute::{Access, Drawn};
 
+use crate::error::mismatch;
 use crate::surface::{Bounds, Layout, Surface, buffer};
 use crate::{Error, Gpu};
 
@@ -56,7 +57,7 @@ impl Refiner {
     /// Makes what the program needs, and compiles what was not yet. Nothing runs yet; the cage has no points yet.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] for a program that refers to what it has not.
+    /// [`limn_layout::Error::Mismatch`] for a program that refers to what it has not.
     pub fn new(gpu: &Gpu, compute: &mut Compute, program: &Program) -> Result<Refiner, Error> {
         let surface = Surface::reserve(gpu, &program.shape());
         let mut drawn = surface.filled().into_iter();
@@ -73,7 +74,7 @@ impl Refiner {
             .collect();
         let limit = made.len() as u64;
         let at = |id: u32| {
-            let error = Error::Mismatch { what: "buffers of a program", found: id.into(), expected: limit };
+            let error = mismatch("buffers of a program", id.into(), limit);
             made.get(id as usize).ok_or(error)
         };
         for (id, b) in (0..).zip(&program.buffers).filter(|(_, b)| !b.contents.is_empty()) {
@@ -84,7 +85,7 @@ impl Refiner {
                 let found = dispatch.shader.into();
                 let expected = program.shaders.len() as u64;
                 let shader = program.shaders.get(dispatch.shader as usize);
-                let shader = shader.ok_or(Error::Mismatch { what: "shaders of a program", found, expected })?;
+                let shader = shader.ok_or(mismatch("shaders of a program", found, expected))?;
                 let bound = dispatch.bound.each_ref().map(|ids| ids.iter().map(|&id| at(id)).collect());
                 let [read, work]: [Result<Vec<&wgpu::Buffer>, Error>; 2] = bound;
                 Ok(compute.step(gpu, shader, dispatch, &read?, &work?))
@@ -111,7 +112,7 @@ impl Refiner {
     /// Cost: 16 bytes a point to the GPU.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] for more points than there are vertices.
+    /// [`limn_layout::Error::Mismatch`] for more points than there are vertices.
     pub fn set_points(&self, gpu: &Gpu, first: u32, points: &[[f32; 3]]) -> Result<(), Error> {
         let padded: Vec<[f32; 4]> = points.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
         self.set_values(gpu, first, &padded)
@@ -120,11 +121,11 @@ impl Refiner {
     /// The same of values of four numbers: linear RGBA.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] for more values than there are vertices.
+    /// [`limn_layout::Error::Mismatch`] for more values than there are vertices.
     pub fn set_values(&self, gpu: &Gpu, first: u32, values: &[[f32; 4]]) -> Result<(), Error> {
         let end = u64::from(first) + values.len() as u64;
         if end > u64::from(self.cage_vertices) {
-            return Err(Error::Mismatch { what: "cage points", found: end, expected: self.cage_vertices.into() });
+            return Err(mismatch("cage points", end, self.cage_vertices.into()));
         }
         gpu.queue.write_buffer(&self.cage, u64::from(first) * 16, bytemuck::cast_slice(values));
         Ok(())
@@ -153,7 +154,7 @@ impl Refiner {
     /// the points, `colors` a refiner of colours beside this one.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] where there are colours and faces do not share vertices, or the colours are of others.
+    /// [`limn_layout::Error::Mismatch`] where there are colours and faces do not share vertices, or the colours are of others.
     pub fn surface(&self, bounds: Bounds, colors: Option<&Refiner>) -> Result<Surface, Error> {
         let mut surface = self.surface.clone();
         surface.settle(bounds, &[], self.runs.as_flattened());
@@ -165,7 +166,7 @@ impl Refiner {
                 }
                 _ => {
                     let (found, expected) = (r.count.into(), self.count.into());
-                    return Err(Error::Mismatch { what: "colours of vertices that quads share", found, expected });
+                    return Err(mismatch("colours of vertices that quads share", found, expected));
                 }
             }
         }

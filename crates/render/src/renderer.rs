@@ -120,7 +120,7 @@ impl Renderer {
     /// others, and shown in another colour: 1 for twice as wide. An edge from a vertex to itself is a dot.
     ///
     /// # Errors
-    /// [`Error::Index`] for an edge past the end of the points.
+    /// [`limn_layout::Error::Index`] for an edge past the end of the points.
     pub fn set_cage(&mut self, points: &[[f32; 3]], edges: &[[u32; 2]], marks: &[f32]) -> Result<(), Error> {
         self.cage = Instances::lines(&self.gpu, points, edges, marks)?;
         Ok(())
@@ -155,7 +155,7 @@ impl Renderer {
     /// The textures that materials refer to.
     ///
     /// # Errors
-    /// [`Error::TextureSize`] and [`Error::Mismatch`].
+    /// [`Error::TextureSize`] and [`limn_layout::Error::Mismatch`].
     pub fn set_textures(&mut self, textures: &[TextureData<'_>]) -> Result<(), Error> {
         self.materials.set_textures(&self.gpu, &mut self.pipelines, textures)
     }

@@ -5,6 +5,7 @@ mod common;
 
 use common::{Picture, Quads, cube, frame, orthographic, perspective, renderer, shoot, torus};
 use glam::Vec3;
+use limn_layout::Error as Data;
 use limn_render::{
     Background, Edges, Error, Faces, Frame, Ground, Material, Part, Renderer, Shading, Style, SurfaceData, TextureData,
     Upload,
@@ -278,7 +279,10 @@ fn the_cage_shows_fully_in_front_and_faintly_behind() {
     for (at, seen) in [([32, 16], true), ([26, 16], true), ([38, 16], true), ([32, 10], true), ([41, 16], false)] {
         assert_eq!(near(p.at(at[0], at[1]), [255, 0, 0, 255], 3), seen, "{at:?}: {:?}", p.at(at[0], at[1]));
     }
-    assert_eq!(r.set_cage(&points, &[[0, 1], [2, 7]], &[]), Err(Error::Index { corner: 3, index: 7, vertices: 4 }));
+    assert_eq!(
+        r.set_cage(&points, &[[0, 1], [2, 7]], &[]),
+        Err(Data::Index { corner: 3, index: 7, vertices: 4 }.into())
+    );
 }
 
 #[test]
@@ -452,9 +456,9 @@ fn parts_have_their_materials_and_groups_are_hidden() {
         // Pieces of one quad each: a run of several pieces must come out whole.
         let mut upload = Upload::with_chunk(r.gpu(), &data, 24).unwrap();
         while !upload.step(r.gpu(), &data, 1).unwrap() {
-            assert!(upload.progress(&data) < 1.0);
+            assert!(upload.progress() < 1.0);
         }
-        assert_eq!(upload.progress(&data), 1.0);
+        assert_eq!(upload.progress(), 1.0);
         r.show(Some(upload.finish()));
         let mut f = front(plain());
         let at = |p: &Picture| [(24, 40), (40, 40), (40, 24), (24, 24)].map(|(x, y)| p.at(x, y));
@@ -549,14 +553,14 @@ fn what_does_not_fit_is_refused_with_the_numbers() {
     quads[6] = 40;
     let mut data = SurfaceData::new(&m.points, &n, Faces::Quads(&quads));
     data.parents = m.parents;
-    assert_eq!(r.set_surface(&data), Err(Error::Index { corner: 6, index: 40, vertices: 9 }));
+    assert_eq!(r.set_surface(&data), Err(Data::Index { corner: 6, index: 40, vertices: 9 }.into()));
     quads[6] = 3;
     let mut data = SurfaceData::new(&m.points, &n, Faces::Quads(&quads));
     data.parents = m.parents;
-    assert!(matches!(r.set_surface(&data), Err(Error::Order { face: 1 })));
+    assert!(matches!(r.set_surface(&data), Err(Error::Data(Data::Order { face: 1 }))));
     assert_eq!(
         r.set_textures(&[TextureData { width: 2, height: 2, rgba: &[0; 12] }]),
-        Err(Error::Mismatch { what: "bytes of a texture", found: 12, expected: 16 })
+        Err(Data::Mismatch { what: "bytes of a texture", found: 12, expected: 16 }.into())
     );
     assert!(matches!(
         r.set_textures(&[TextureData { width: 0, height: 2, rgba: &[] }]),

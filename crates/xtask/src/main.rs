@@ -54,6 +54,7 @@ Usage: cargo xtask <command> [options]
             --page           the page once more, of docs/benchmarks/results.json
             --levels         the kernel alone, level by level
             --wasm           the same, and once more as WebAssembly under Node
+  slider  what the buffers of a level take when the slider goes there, piece by piece, on the page as it ships
   screenshots
           pictures of the page, on a laptop and a phone, dark and light, under target/screenshots
   help    this text
@@ -79,6 +80,7 @@ fn run() -> Result<()> {
         "dist" => dist::run(arguments),
         "test" => test::run(arguments),
         "screenshots" => test::screenshots(arguments),
+        "slider" => test::slider(arguments),
         "tidy" => tidy::run(arguments),
         "bench" => bench::run(arguments),
         "help" | "--help" | "-h" => {

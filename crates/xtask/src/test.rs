@@ -137,6 +137,13 @@ pub fn screenshots(arguments: Arguments) -> Result<()> {
     process::run(node.arg("tests/browser/screenshots.mjs"))
 }
 
+/// Prints what a level's buffers take when the slider goes there, on the page as it ships.
+pub fn slider(arguments: Arguments) -> Result<()> {
+    arguments.finish()?;
+    let mut node = page(false)?;
+    process::run(node.arg("tests/browser/slider.mjs").env("LIMN_QUICK", "1"))
+}
+
 /// Sets up what the page's tests need, and returns a Node that knows where it is.
 fn page(quick: bool) -> Result<Command> {
     toolchain::ensure_packages()?;

@@ -22,12 +22,13 @@ use std::time::{Instant, SystemTime};
 use wasm_bindgen_cli_support::Bindgen;
 
 /// What is compiled for speed where files are read; the engine only unpacks what that sends.
-const READS_FAST: &str = "profile.dist.package.limn-formats.opt-level=3";
+const READS_FAST: &[&str] = &["profile.dist.package.limn-formats.opt-level=3"];
 
-/// How the kernel's own crate is compiled. It is a few calls, but the passes over the whole linked module run at the level of the
+/// How the kernel's own crate, and what packs its levels, are compiled. The kernel is a few calls, but the passes over the whole linked module run at the level of the
 /// crate that is linked, whatever the others are compiled at: at z and at 2 the loops over lanes of `mesh/src/patch/grid.rs`, and
 /// patches with them, take twice the time that they take at 3.
-const REFINES_FAST: &str = "profile.dist.package.limn-kernel.opt-level=3";
+const REFINES_FAST: &[&str] =
+    &["profile.dist.package.limn-kernel.opt-level=3", "profile.dist.package.limn-layout.opt-level=3"];
 
 /// One of the wasm modules.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -170,9 +171,9 @@ fn compile(module: Module, profile: Profile) -> Result<PathBuf> {
     command.args(module.features());
     command.args(["--target", toolchain::WASM, "--profile", profile.id(), "--target-dir"]).arg(&target);
     let faster = match module {
-        Module::Files => Some(READS_FAST),
-        Module::Kernel | Module::Plain | Module::Trial => Some(REFINES_FAST),
-        Module::WebGpu | Module::WebGl => None,
+        Module::Files => READS_FAST,
+        Module::Kernel | Module::Plain | Module::Trial => REFINES_FAST,
+        Module::WebGpu | Module::WebGl => &[],
     };
     command.args(faster.iter().flat_map(|setting| ["--config", setting]));
     command.env("RUSTFLAGS", toolchain::wasm_flags(module.has_vectors()));
@@ -210,7 +211,7 @@ pub fn newest_source() -> Result<SystemTime> {
     for file in ["Cargo.toml", "Cargo.lock", "rust-toolchain.toml", ".cargo/config.toml"].into_iter().chain(how) {
         newest = newest.max(modified(&paths::root().join(file)).unwrap_or(newest));
     }
-    for name in ["mesh", "compute", "formats", "document", "render", "engine", "files", "kernel"] {
+    for name in ["mesh", "compute", "layout", "formats", "document", "render", "engine", "files", "kernel"] {
         newest = newest.max(newest_below(&paths::root().join("crates").join(name))?);
     }
     Ok(newest)

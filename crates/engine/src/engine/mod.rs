@@ -443,7 +443,12 @@ impl Engine {
             }
             Outcome::Refine => {
                 self.skipped.clear();
+                let (due, panes) = (self.dirty.picture, self.views.len());
                 self.sync();
+                // What is shown stays until the new level is there: drawing it once more would only hold up the buffers.
+                if (self.making.is_some() || self.wants_kernel) && self.views.len() == panes {
+                    self.dirty.picture = due;
+                }
             }
             Outcome::Model => {
                 self.skipped.clear();

@@ -11,7 +11,7 @@ use limn_render::Surface;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::{Engine, Known};
-use crate::kernel::{Kernel, Remote};
+use crate::kernel::{Elsewhere, Kernel, Remote};
 use crate::making::{MOST_FLAT, Making, Parts, Step, Work};
 use crate::protocol::{Card, Message};
 use crate::report::Facts;
@@ -88,8 +88,8 @@ impl Engine {
                     return;
                 }
                 _ => {
-                    let on_gpu = !(here || corners || all_here);
-                    match on_gpu.then(|| self.on_gpu(&mesh, &plan, &parts)).flatten() {
+                    let elsewhere = !(here || corners || all_here);
+                    match elsewhere.then(|| self.elsewhere(&mesh, &plan, budget, &parts)).flatten() {
                         Some(making) => Ok(making),
                         None => self
                             .work_on(&mesh, &plan, budget)
@@ -128,18 +128,16 @@ impl Engine {
         }
     }
 
-    /// Lets the GPU refine, if it can.
-    fn on_gpu(&mut self, mesh: &Arc<Mesh>, plan: &Plan, parts: &Arc<Parts>) -> Option<Making> {
-        if !cfg!(feature = "webgpu") {
-            return None;
-        }
+    /// Lets the GPU refine, or the module with every scheme, into the buffers that are drawn; none if the level has to come here.
+    fn elsewhere(&mut self, mesh: &Arc<Mesh>, plan: &Plan, budget: u64, parts: &Arc<Parts>) -> Option<Making> {
         let counts = predict(mesh, plan).ok()??.counts;
         let gpu = self.renderer.gpu();
-        let drawing = self.kernel.as_mut()?.draw(mesh, plan, parts.of_faces(), gpu)?;
+        let drawing = self.kernel.as_mut()?.draw(mesh, plan, parts.of_faces(), budget, gpu)?;
         let surface = Surface::reserve(gpu, &drawing.shape());
         drawing.run();
         let level = Refined::elsewhere(mesh.clone(), plan.level, counts);
-        Some(Making::wait(Box::new(drawing), surface, level, plan.clone(), parts.clone(), self.clock.now()))
+        let filler = Box::new(Elsewhere(drawing));
+        Some(Making::wait(filler, surface, level, plan.clone(), parts.clone(), self.clock.now()))
     }
 
     /// Says that the module with every scheme could not be loaded, and goes back.
@@ -182,7 +180,7 @@ impl Engine {
                         }
                         return self.sync();
                     }
-                    self.times.gpu = made.is_away();
+                    self.times.gpu = making.on_gpu;
                     self.times.refine = making.spent[0];
                     self.times.build = making.spent[1];
                     self.shown = Some(made);

@@ -15,7 +15,7 @@ use limn_mesh::{
     refine, scheme, shape, triangulate_soup,
 };
 use limn_render::refine::{Compute, Refiner, limits};
-use limn_render::{Bounds, Edges, Error, Gpu, Material, Part, Renderer, Style, Surface, SurfaceData, TextureData};
+use limn_render::{Bounds, Edges, Gpu, Material, Part, Renderer, Style, Surface, SurfaceData, TextureData};
 use std::sync::Arc;
 
 const BUDGET: u64 = 1 << 30;
@@ -311,7 +311,7 @@ fn a_cage_that_moves() {
         let refined = refine(&Arc::new(moved), &plan, BUDGET).unwrap();
         check.same(&refiner, &refined, &format!("{id}, moved"));
         let error = refiner.set_points(check.gpu(), 7, &mesh.positions[..2]).unwrap_err();
-        assert_eq!(error, Error::Mismatch { what: "cage points", found: 9, expected: 8 });
+        assert_eq!(error, limn_layout::Error::Mismatch { what: "cage points", found: 9, expected: 8 }.into());
     }
 }
 

@@ -13,27 +13,37 @@
 //!        -y
 //! ```
 
-pub use crate::srgb::{color, encode};
-
 /// Packs a direction of any length above 0; zero and NaN become +z. Cost: about 4 ns, most of it the two divisions.
-pub fn normal([x, y, z]: [f32; 3]) -> [i16; 2] {
-    let sum = x.abs() + y.abs() + z.abs();
-    if !(sum > 0.0 && sum.is_finite()) {
-        return [0, 0];
+pub fn normal(n: [f32; 3]) -> [i16; 2] {
+    normals(&[n])[0]
+}
+
+/// Packs several directions as [`normal`] does, one a lane of a vector where the machine has them: nothing branches.
+#[inline(always)]
+pub fn normals<const N: usize>(normals: &[[f32; 3]; N]) -> [[i16; 2]; N] {
+    let along = |k: usize| -> [f32; N] { std::array::from_fn(|i| normals[i][k]) };
+    let (xs, ys, zs) = (along(0), along(1), along(2));
+    let mut out = [[0; N]; 2];
+    for i in 0..N {
+        let (x, y, z) = (xs[i], ys[i], zs[i]);
+        let sum = x.abs() + y.abs() + z.abs();
+        // Never beyond 1: no part is larger than the rounded sum.
+        let (x, y) = (x / sum, y / sum);
+        let folded = [(1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y)];
+        let [x, y] = if z < 0.0 { folded } else { [x, y] };
+        let known = sum > 0.0 && sum < f32::INFINITY;
+        out[0][i] = if known { snorm(x) } else { 0 };
+        out[1][i] = if known { snorm(y) } else { 0 };
     }
-    // Never beyond 1: no part is larger than the rounded sum.
-    let (mut x, mut y) = (x / sum, y / sum);
-    if z < 0.0 {
-        (x, y) = ((1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y));
-    }
-    [snorm(x), snorm(y)]
+    std::array::from_fn(|i| [out[0][i] as i16, out[1][i] as i16])
 }
 
 /// The nearest of 32767ths, halves away from zero. That is what `round` does, which is no machine instruction on the web: a
 /// bit less than a half is added, as a half itself would lift the number below 0.5 to 1.
-fn snorm(v: f32) -> i16 {
+#[inline(always)]
+fn snorm(v: f32) -> i32 {
     let v = v * 32767.0;
-    (v + (0.5f32 - f32::EPSILON / 4.0).copysign(v)) as i32 as i16
+    (v + (0.5f32 - f32::EPSILON / 4.0).copysign(v)) as i32
 }
 
 /// The unit normal that [`normal`] packed; the shaders do the same.
@@ -48,10 +58,22 @@ pub fn unpack_normal(p: [i16; 2]) -> [f32; 3] {
     [x / len, y / len, z / len]
 }
 
+/// One channel from linear light to sRGB, both 0..=1.
+pub fn encode(linear: f32) -> f32 {
+    let c = linear.clamp(0.0, 1.0);
+    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// One channel from sRGB to linear light, both 0..=1.
 pub fn decode(srgb: f32) -> f32 {
     let c = srgb.clamp(0.0, 1.0);
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Linear RGBA to four sRGB bytes (alpha stays linear).
+pub fn color(linear: [f32; 4]) -> [u8; 4] {
+    let byte = |v: f32| (v * 255.0).round() as u8;
+    [byte(encode(linear[0])), byte(encode(linear[1])), byte(encode(linear[2])), byte(linear[3].clamp(0.0, 1.0))]
 }
 
 #[cfg(test)]
@@ -100,14 +122,14 @@ mod tests {
             let middle = (half as f32 + 0.5) / 32767.0;
             for bits in middle.to_bits() - 3..=middle.to_bits() + 3 {
                 for v in [f32::from_bits(bits), -f32::from_bits(bits)] {
-                    assert_eq!(snorm(v), (v * 32767.0).round() as i16, "{v}");
+                    assert_eq!(snorm(v), (v * 32767.0).round() as i32, "{v}");
                 }
             }
         }
         for bits in [0.0f32, 0.5 / 32767.0, 1.0].map(f32::to_bits) {
             for bits in bits.saturating_sub(4)..=bits {
                 let v = f32::from_bits(bits);
-                assert_eq!([snorm(v), snorm(-v)], [(v * 32767.0).round() as i16, (-v * 32767.0).round() as i16]);
+                assert_eq!([snorm(v), snorm(-v)], [(v * 32767.0).round() as i32, (-v * 32767.0).round() as i32]);
             }
         }
         // Directions of all lengths, and what is none.
@@ -119,9 +141,9 @@ mod tests {
         for _ in 0..200_000 {
             let any = [(); 3].map(|()| f32::from_bits(next()));
             let near = [(); 3].map(|()| (next() >> 8) as f32 / 8_388_608.0 - 1.0);
-            for n in [any, near, [near[0], 0.0, -0.0], [near[0], near[1], f32::from_bits(next() & 0x807f_ffff)]] {
-                assert_eq!(normal(n), defined(n), "{n:?}");
-            }
+            let four = [any, near, [near[0], 0.0, -0.0], [near[0], near[1], f32::from_bits(next() & 0x807f_ffff)]];
+            assert_eq!(normals(&four), four.map(defined), "{four:?}");
+            assert_eq!(four.map(normal), four.map(defined), "{four:?}");
         }
     }
 
