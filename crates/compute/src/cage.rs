@@ -142,7 +142,7 @@ impl Cage<'_> {
             if found == expected {
                 Ok(())
             } else {
-                Err(Error::Mismatch { what, found: found as u64, expected: expected as u64 })
+                Err(limn_layout::Error::Mismatch { what, found: found as u64, expected: expected as u64 })
             }
         };
         expect("origins of half-edges", self.origin.len(), half_edges)?;

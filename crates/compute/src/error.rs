@@ -15,26 +15,9 @@ pub enum Error {
         /// The adapter's limit in bytes.
         limit: u64,
     },
-    /// Slices that do not belong together.
-    #[error("{what}: {found} were given where {expected} are needed")]
-    Mismatch {
-        /// Which slice.
-        what: &'static str,
-        /// Elements found.
-        found: u64,
-        /// Elements expected.
-        expected: u64,
-    },
-    /// An index past the end of the points.
-    #[error("corner {corner} refers to vertex {index}, but there are {vertices} vertices")]
-    Index {
-        /// Corner number in the slice.
-        corner: u64,
-        /// The index found there.
-        index: u32,
-        /// Number of vertices.
-        vertices: u64,
-    },
+    /// Slices that do not belong together, or an index past their end.
+    #[error(transparent)]
+    Data(#[from] limn_layout::Error),
     /// Half-edges that do not fit together.
     #[error("{what} {at} of the mesh does not fit its neighbours, so it cannot be refined on the graphics adapter")]
     HalfEdges {

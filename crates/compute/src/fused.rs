@@ -91,7 +91,7 @@ struct HalfEdges {
 /// The program that refines `cage` to `to`, at least 1, by a scheme with kernels of its own. Cost: linear in the cage.
 ///
 /// # Errors
-/// [`Error::Mismatch`], [`Error::HalfEdges`] for tables that do not belong together; [`Error::TooLarge`] where a buffer would leave
+/// [`Error::Data`], [`Error::HalfEdges`] for tables that do not belong together; [`Error::TooLarge`] where a buffer would leave
 /// the adapter's limits.
 pub fn fused(cage: &Cage<'_>, rules: &Rules, to: u32, values: Values, limits: Limits) -> Result<Program, Error> {
     let mut builder = Builder::new(limits);
@@ -178,7 +178,7 @@ impl Chain {
         let split = scheme.split();
         cage.check(split)?;
         if to == 0 {
-            return Err(Error::Mismatch { what: "levels", found: 0, expected: 1 });
+            return Err(limn_layout::Error::Mismatch { what: "levels", found: 0, expected: 1 }.into());
         }
         let mut sizes = vec![cage.size()];
         for k in 0..to as usize {

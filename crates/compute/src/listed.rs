@@ -12,6 +12,7 @@ use crate::Error;
 use crate::finish::{Drawn, Piece};
 use crate::kernels::{Kernel, Level};
 use crate::program::{Builder, Dispatch, Id};
+use limn_layout::Error as Data;
 use limn_layout::corners::edge_flags;
 use limn_mesh::{Faces, Refined, triangulate};
 
@@ -21,7 +22,7 @@ fn around(faces: &Faces, vertices: u32) -> Result<(Vec<u32>, Vec<u32>), Error> {
     for (corner, &v) in (0..).zip(faces.corners()) {
         match turns.get_mut(v as usize + 2) {
             Some(n) if v < vertices => *n += 1,
-            _ => return Err(Error::Index { corner, index: v, vertices: vertices.into() }),
+            _ => return Err(Data::Index { corner, index: v, vertices: vertices.into() }.into()),
         }
     }
     for v in 2..turns.len() {

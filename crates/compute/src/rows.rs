@@ -12,6 +12,7 @@
 use super::kernels::{Kernel, Level};
 use super::program::{Builder, Dispatch, Id, Limits, Program, Role};
 use super::{Error, listed, recorded};
+use limn_layout::Error as Data;
 use limn_mesh::plan::mean_edge;
 use limn_mesh::{Connectivity, Mesh, Plan, Refined, predict, refine};
 use std::sync::Arc;
@@ -71,19 +72,19 @@ pub struct Rows<'a> {
 
 impl RowLevel {
     /// That every row gives a child of this level from what is there.
-    fn check(&self, before: u32) -> Result<(), Error> {
+    fn check(&self, before: u32) -> Result<(), Data> {
         for pass in &self.passes {
             let rows = (pass.offsets.len() as u64).saturating_sub(1);
             let end = pass.offsets.last().map_or(0, |&n| n as usize);
             let expect = |what, found: u64, expected: u64| {
-                if found == expected { Ok(()) } else { Err(Error::Mismatch { what, found, expected }) }
+                if found == expected { Ok(()) } else { Err(Data::Mismatch { what, found, expected }) }
             };
             expect("weights", pass.entries.len() as u64, end as u64)?;
             if !pass.moves.is_empty() {
                 expect("moves", pass.moves.len() as u64, rows)?;
             }
             if u64::from(pass.first) + rows > u64::from(self.vertices) || !pass.offsets.is_sorted() {
-                return Err(Error::Mismatch {
+                return Err(Data::Mismatch {
                     what: "rows",
                     found: u64::from(pass.first) + rows,
                     expected: self.vertices.into(),
@@ -95,7 +96,7 @@ impl RowLevel {
             };
             if let Some(at) = pass.entries.iter().position(|entry| !is_there(entry)) {
                 let index = pass.entries.get(at).map_or(0, |e| e[0] & !Pass::CHILD);
-                return Err(Error::Index { corner: at as u64, index, vertices: before.max(self.vertices).into() });
+                return Err(Data::Index { corner: at as u64, index, vertices: before.max(self.vertices).into() });
             }
         }
         let Tangents { offsets, entries } = &self.tangents;
@@ -103,12 +104,12 @@ impl RowLevel {
         let expected = u64::from(self.vertices) + 1;
         let ends = offsets.is_sorted() && offsets.last().is_none_or(|&n| n as usize == entries.len());
         if found > 0 && found != expected || !ends {
-            return Err(Error::Mismatch { what: "tangents", found, expected });
+            return Err(Data::Mismatch { what: "tangents", found, expected });
         }
         match entries.iter().position(|entry| entry[0] >= before) {
             Some(at) => {
                 let index = entries.get(at).map_or(0, |e| e[0]);
-                Err(Error::Index { corner: at as u64, index, vertices: before.into() })
+                Err(Data::Index { corner: at as u64, index, vertices: before.into() })
             }
             None => Ok(()),
         }
@@ -130,7 +131,7 @@ fn measured(builder: &mut Builder, mesh: &Mesh, cage: Id, each: &mut Vec<Dispatc
 /// The program that refines by rows. Cost: linear in the last level.
 ///
 /// # Errors
-/// [`Error::Mismatch`] and [`Error::Index`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
+/// [`Error::Data`] for tables that do not belong together, [`Error::TooLarge`] where a buffer would
 /// leave the adapter's limits.
 pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
     let cage_vertices = rows.mesh.topology.vertices();
@@ -141,7 +142,7 @@ pub fn rows(rows: &Rows<'_>, limits: Limits) -> Result<Program, Error> {
     }
     let (found, expected) = (rows.level.points.len() as u64, before.into());
     if found != expected {
-        return Err(Error::Mismatch { what: "points of the last level", found, expected });
+        return Err(Data::Mismatch { what: "points of the last level", found, expected }.into());
     }
     let mut builder = Builder::new(limits);
     let cage = builder.make("cage", 16 * u64::from(cage_vertices), Role::Cage)?;

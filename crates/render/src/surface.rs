@@ -44,7 +44,7 @@ pub struct Surface {
 
 impl Surface {
     /// A surface whose buffers somebody else fills before it is drawn, in the layout that [`Upload`](crate::Upload) gives them: compute, or who
-    /// packs a level where it was made. `shape` is [`limn_layout::shape`]. The buffers are made in the order of [`Surface::filled`], and no others between.
+    /// packs a level where it was made. `shape` is [`limn_layout::shape`]. The buffers are made in the order of `Surface::filled`, and no others between.
     pub fn reserve(gpu: &Gpu, shape: &[u32]) -> Surface {
         use wgpu::BufferUsages as U;
         let base = if cfg!(feature = "webgl") { U::COPY_DST } else { U::COPY_DST | U::STORAGE };
