@@ -350,10 +350,10 @@ describe("refinement on the GPU", () => {
 
   test("gives the CPU what the GPU has no kernels for where the address says nothing, and says so", async () => {
     // As if the adapter were none of software.
-    const source = await readFile(new URL("../../web/compute.js", import.meta.url), "utf8");
+    const source = await readFile(new URL("../../web/fill.js", import.meta.url), "utf8");
     const faster = source.replace('return isProgram ? "nothing" : "kernels"', 'return "kernels"');
     assert.notEqual(faster, source);
-    here.site.extra.set("/web/compute.js", faster);
+    here.site.extra.set("/web/fill.js", faster);
     try {
       const page = await here.visit({ search: "?renderer=webgpu", hash: "#1;open+builtin:cube;scheme+catmull-clark;level+3" });
       assert.match((await said(page)) ?? "", / on the GPU /);
@@ -368,7 +368,7 @@ describe("refinement on the GPU", () => {
         ["scheme sqrt3", "C"],
       ]);
     } finally {
-      here.site.extra.delete("/web/compute.js");
+      here.site.extra.delete("/web/fill.js");
     }
   });
 
